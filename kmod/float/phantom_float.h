@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * phantom_float.h - the border between the float sections and the rest of the module.
+ *
+ * Float sections (kmod/float/) turn one tip position and one set of patches into one force. They
+ * include nothing of Linux but types, allocate nothing, print nothing, sleep never and have no
+ * loop without a constant bound. Everything that crosses this header is an integer or a pointer:
+ * a float in a signature does not compile outside the units that have FPU flags.
+ *
+ * Calling context: between kernel_fpu_begin() and kernel_fpu_end(), opened by phantom_servo.c
+ * only. One table of functions per instruction set; the servo picks one at load by what the CPU
+ * has. The same inputs give the same bits from each of sse2 and avx2, in the kernel and in user
+ * mode (-ffp-contract=off, fixed summation order).
+ *
+ * Source of the mathematics: Kabelac 2001, Algorithm 1 (`paper`); the shell projection
+ * (`projected`) is derived above its code in projected.h.
+ */
+#ifndef PHANTOM_FLOAT_H
+#define PHANTOM_FLOAT_H
+
+#include <phantom_platform_types.h> /* u32, s32, u64, s64, bool, size_t; nothing else */
+#include "phantom_abi.h"
+
+/* Opaque to the integer side: SoA blocks of patches in float, precomputed by prepare(). */
+struct phantom_float_set;
+
+#define PHANTOM_FLOAT_SET_ALIGN 64
+
+/* Patches converted by one call of prepare(): bounds the float section. */
+#define PHANTOM_FLOAT_PREPARE_MAX 64
+
+/* Patches evaluated by one call of a bounded tick in the kernel. */
+#define PHANTOM_FLOAT_TICK_MAX PHANTOM_PATCHES_MAX
+
+/* Conversion of a validated set, in pieces; first = 0 initialises the header and materials. */
+struct phantom_float_prepare {
+	struct phantom_float_set *set;
+	const struct phantom_patch *patches; /* the whole array */
+	const struct phantom_material *materials;
+	u32 patch_count;
+	u32 material_count;
+	u32 first; /* this piece: patches first ... first + count - 1; first is a multiple of 8 */
+	u32 count; /* <= PHANTOM_FLOAT_PREPARE_MAX */
+	u32 refused; /* out, added to: patches that cannot be computed (zero area, ...) */
+};
+
+/*
+ * One tick. Positions are nm relative to the origin of `set`; the servo rebases the state when
+ * the set changes. All of it is plain integers, so that kernel and user mode can compare it.
+ */
+struct phantom_float_job {
+	/* in */
+	const struct phantom_float_set *set;
+	struct phantom_model model;
+	s32 tip_nm[3]; /* P1 */
+	s32 previous_nm[3]; /* P0 */
+	s32 velocity_nm_s[3]; /* of the tip, filtered; for effects */
+	u32 effects; /* mask to run */
+	u32 path_valid; /* 0: P0 means nothing (first tick), no crossing is looked for */
+	/* state, in and out */
+	u32 inside;
+	s32 proxy_nm[3]; /* V while inside */
+	u32 proxy_face; /* phantom_patch.face that V lies on, or PHANTOM_PATCH_NONE */
+	/* out */
+	s32 force_un[3];
+	s32 normal_q30[3]; /* of the contact; 0 0 0 without one */
+	u32 contacts; /* paper: contacts after overlap removal; projected: roots; inside: 1 */
+	u32 folded; /* projected: roots of folded shells (they are in contacts too) */
+	u32 saturated; /* conversions that saturated in this tick */
+	u32 invalid; /* 1: a result was no number; force is 0 0 0 then */
+};
+
+struct phantom_float_ops {
+	const char *name; /* "sse2", "avx2", "double" */
+	u32 isa; /* PHANTOM_ISA_... */
+	/* Bytes of a set of that many patches (round up to PHANTOM_FLOAT_SET_ALIGN inside). */
+	size_t (*set_bytes)(u32 patch_count);
+	void (*prepare)(struct phantom_float_prepare *prepare);
+	void (*tick)(struct phantom_float_job *job);
+};
+
+extern const struct phantom_float_ops phantom_float_sse2;
+extern const struct phantom_float_ops phantom_float_avx2;
+/* User mode only: the same source in float64. */
+extern const struct phantom_float_ops phantom_float_double;
+
+#endif /* PHANTOM_FLOAT_H */

@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: GPL-2.0-only WITH Linux-syscall-note */
+/*
+ * phantom_abi.h - the user API of phantom_rt.ko, and of its user-mode build.
+ *
+ * WHAT IT IS
+ *   A fast task (the servo tick, 1 ... 10 kHz) turns the position of the tip of a
+ *   haptic device into a force, from a small set of triangles. A slow task in user
+ *   space (the feeder, some 100 Hz) knows the whole scene and keeps choosing that
+ *   set. This header is everything that the two share.
+ *
+ * LIFE CYCLE
+ *   fd = open("/dev/phantom_rt0", O_RDWR)       the feeder; one at a time
+ *   ioctl(fd, PHANTOM_GET_INFO, &info)          check abi_version and features
+ *   status = mmap(NULL, info.status_size, PROT_READ, MAP_SHARED, fd, 0)
+ *   ioctl(fd, PHANTOM_SET_RATE, &rate)          optional, at any time
+ *   ioctl(fd, PHANTOM_SET_MODEL, &model)        optional, at any time
+ *   ioctl(fd, PHANTOM_SUBMIT_SET, &set)         at least one set before there is force
+ *   ioctl(fd, PHANTOM_START, &start)            the force ramps up
+ *   loop: poll(fd, POLLPRI), query the scene round status->tip_nm, PHANTOM_SUBMIT_SET
+ *   ioctl(fd, PHANTOM_STOP, NULL)               the force ramps down, then the tick ends
+ *   close(fd)                                   implies STOP; also when the feeder is killed
+ *   An observer opens O_RDONLY, as many as like: GET_INFO, mmap, poll and read only.
+ *
+ * STATES
+ *
+ *            START                     a fault
+ *     IDLE --------> RUNNING ---------------------------> FAULT
+ *      ^  <--------    |  ^  <--------------------------   |
+ *      |   STOP/close  |  |   CLEAR_FAULT (ramps up)       |
+ *      +-----------------------------------------------------+ STOP, close
+ *
+ *   IDLE     no tick, zero force.
+ *   RUNNING  the tick runs. Force is given where a set covers the tip.
+ *   FAULT    the tick still runs and reports, the force is zero. Latched: only
+ *            CLEAR_FAULT, or STOP followed by CLEAR_FAULT, ends it.
+ *
+ * UNITS
+ *   Everything is an integer in an SI unit; no float crosses this border.
+ *     position, length   nm; __s32 relative to the set's origin, __s64 absolute
+ *     unit vector        Q1.30: 1.0 is 1 << 30
+ *     force              uN (micronewton), __s32
+ *     stiffness          mN/mm (= N/m), __u32
+ *     damping            mN*s/m, __u32
+ *     velocity           nm/s, __s32 (saturates at +-2.1 m/s in the status page)
+ *     time               ns, CLOCK_MONOTONIC, __u64; durations in ns, __u32 (saturating)
+ *   Conversions saturate, never wrap, and are counted (status->saturated).
+ *
+ * COVERAGE
+ *   A set promises: every triangle of the scene within radius_nm of centre_nm is in it.
+ *   Outside the surface the tick needs coverage of the ball of the largest contact
+ *   radius round the tip; inside it needs tip and proxy covered. Where the promise does not
+ *   reach, no force is computed from the part that is there: the last force fades to zero
+ *   within PHANTOM_FADE_NS, PHANTOM_TICK_UNCOVERED is set and poll() reports POLLPRI. The
+ *   same holds for a set that is older than start.stale_ms: set a new one at least that often.
+ *   A swap between two sets that both cover the tip changes the force by rounding only.
+ *
+ * RULES
+ *   Fields are __u32, __s32, __u64 and __s64 only; sizes are multiples of 8, the same for 32
+ *   and 64 bit callers; pointers are carried in __u64. Reserved fields and unknown flag
+ *   bits must be zero. New behaviour comes as a new ioctl number or a new feature bit.
+ *
+ * CALL -> ERRORS -> WHY
+ *   open          EBUSY    O_RDWR (or O_WRONLY) and there is a feeder already
+ *                 ENODEV   the device is gone
+ *   any ioctl     ENOTTY   unknown number
+ *                 EFAULT   the argument or a pointer in it cannot be read or written
+ *                 EBADF    needs O_RDWR (all but GET_INFO)
+ *                 ENODEV   the device was unplugged
+ *   SET_RATE      EINVAL   not within rate_min_hz ... rate_max_hz; reserved not zero
+ *   SET_MODEL     EINVAL   unknown value, newton_steps > 3; reserved not zero
+ *                 EOPNOTSUPP  a known value that info.features does not offer
+ *   START         EBUSY    not IDLE
+ *                 EIO      a latched fault: CLEAR_FAULT first
+ *                 EINVAL   a limit above the device's own, unknown flag, reserved not zero
+ *                 EPERM    PHANTOM_START_LIMITS_OFF on a device that is not simulated
+ *   STOP          (none)   IDLE already: nothing to do, returns 0
+ *   SUBMIT_SET    EINVAL   counts over the limits, an index out of range, id 0 or not larger
+ *                          than the last one, unknown flag or effect, a normal that is not of
+ *                          unit length to 2^-10, a pose that is not the identity (v1), reserved
+ *                          not zero, radius 0 in a material, coordinates beyond +-1 m of origin
+ *                 ENOMEM   no memory (first set after SET_MODEL only; slots are reused)
+ *                 EAGAIN   every slot is in use (a fade holds one): try again next tick
+ *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
+ *   CLEAR_FAULT   EAGAIN   the cause is still there
+ *                 (0 when no fault is latched)
+ *   mmap          EPERM    writable or executable; EINVAL: offset not 0 or too long
+ *   read          EINVAL   the buffer is smaller than one record
+ *                 EAGAIN   O_NONBLOCK and no record
+ *                 0        the tick is not running (end of recording)
+ */
+#ifndef PHANTOM_ABI_H
+#define PHANTOM_ABI_H
+
+#include <linux/ioctl.h>
+#include <linux/types.h>
+
+#define PHANTOM_ABI_VERSION 1
+
+/* The first node. phantom0 belongs to the mainline driver drivers/misc/phantom.c. */
+#define PHANTOM_DEVICE_NODE "/dev/phantom_rt0"
+
+/* ---- limits ------------------------------------------------------------- */
+#define PHANTOM_PATCHES_MAX 512 /* patches in a set */
+#define PHANTOM_MATERIALS_MAX 16 /* materials in a set */
+#define PHANTOM_OBJECTS_MAX 16 /* objects in a set */
+#define PHANTOM_RATE_MIN_HZ 1000
+#define PHANTOM_RATE_MAX_HZ 10000
+#define PHANTOM_NEWTON_STEPS_MAX 3
+#define PHANTOM_COORDINATE_MAX_NM 1000000000 /* +-1 m round a set's origin */
+#define PHANTOM_FADE_NS 20000000 /* force fades to zero, or to another set, in 20 ms */
+
+/* ---- unit vectors -------------------------------------------------------- */
+#define PHANTOM_Q30_ONE (1 << 30)
+
+/* ---- features (info.features) --------------------------------------------- */
+#define PHANTOM_FEATURE_MODEL_PAPER (1ULL << 0)
+#define PHANTOM_FEATURE_MODEL_PROJECTED (1ULL << 1)
+#define PHANTOM_FEATURE_PROXY_PAPER (1ULL << 2)
+#define PHANTOM_FEATURE_PROXY_CONSTRAINED (1ULL << 3)
+#define PHANTOM_FEATURE_ARITH_FLOAT (1ULL << 4)
+#define PHANTOM_FEATURE_ARITH_FIXED (1ULL << 5)
+#define PHANTOM_FEATURE_ARITH_DOUBLE (1ULL << 6) /* user mode only */
+#define PHANTOM_FEATURE_MOVING_OBJECTS (1ULL << 7)
+#define PHANTOM_FEATURE_SIM_MOVE (1ULL << 8)
+
+/* ---- effects (material.effects, set.effects) ------------------------------- */
+#define PHANTOM_EFFECT_DAMPING (1U << 0) /* normal damping; never pulls */
+#define PHANTOM_EFFECTS_KNOWN PHANTOM_EFFECT_DAMPING
+
+/* ---- model (CONTACT: contact, combination, proxy, arithmetic) --------------- */
+#define PHANTOM_MODEL_OFF 0 /* the tick runs, the force is zero */
+#define PHANTOM_MODEL_PAPER 1 /* Kabelac 2001, Algorithm 1 */
+#define PHANTOM_MODEL_PROJECTED 2 /* signed shell projection; the default */
+
+#define PHANTOM_COMBINE_PAPER 0 /* F = S max|s| / |S| */
+#define PHANTOM_COMBINE_BOUNDED 1 /* F = S min(1, max|s| / |S|); the default */
+
+#define PHANTOM_PROXY_OFF 0 /* shell only: the tip falls through below the surface */
+#define PHANTOM_PROXY_PAPER 1
+#define PHANTOM_PROXY_CONSTRAINED 2
+
+#define PHANTOM_ARITH_FLOAT 0
+#define PHANTOM_ARITH_FIXED 1
+#define PHANTOM_ARITH_DOUBLE 2
+
+/* ---- devices ----------------------------------------------------------------- */
+#define PHANTOM_DEVICE_NONE 0
+#define PHANTOM_DEVICE_SIM 1
+#define PHANTOM_DEVICE_HID 2
+#define PHANTOM_DEVICE_PCI 3
+
+/* ---- instruction sets of the float sections (status.isa) --------------------- */
+#define PHANTOM_ISA_NONE 0
+#define PHANTOM_ISA_SSE2 1
+#define PHANTOM_ISA_AVX2 2
+#define PHANTOM_ISA_DOUBLE 3 /* user mode only */
+
+/* ---- states and faults --------------------------------------------------------- */
+#define PHANTOM_STATE_IDLE 0
+#define PHANTOM_STATE_RUNNING 1
+#define PHANTOM_STATE_FAULT 2
+
+#define PHANTOM_FAULT_DEVICE (1U << 0) /* reading or writing the device failed */
+#define PHANTOM_FAULT_OVERSPEED (1U << 1) /* the tip moved faster than start.max_speed_um_s */
+#define PHANTOM_FAULT_STALL (1U << 2) /* a tick came later than start.stall_us */
+#define PHANTOM_FAULT_NUMERIC (1U << 3) /* a float section gave a value that is no number */
+#define PHANTOM_FAULT_UNPLUGGED (1U << 4)
+
+/* GET_INFO. Written by the module. */
+struct phantom_info {
+	__u32 abi_version; /* PHANTOM_ABI_VERSION */
+	__u32 device; /* PHANTOM_DEVICE_... */
+	__u64 features; /* PHANTOM_FEATURE_... */
+	__u32 patches_max;
+	__u32 materials_max;
+	__u32 objects_max;
+	__u32 rate_min_hz;
+	__u32 rate_max_hz;
+	__u32 status_size; /* bytes to mmap */
+	__u32 tick_size; /* bytes of one record of read() */
+	__u32 effects; /* effects that this module can run */
+	__s32 workspace_min_nm[3];
+	__s32 workspace_max_nm[3];
+	__u32 max_force_un; /* the most the device may be asked for */
+	__u32 continuous_force_un; /* what it bears for long; 0 = not known */
+	__u32 resolution_nm; /* of the position; 0 = not known */
+	__u32 device_rate_hz; /* how often the device answers; 0 = every tick */
+	__u32 reserved[6];
+};
+
+/* SET_RATE. Takes effect without a missed tick. */
+struct phantom_rate {
+	__u32 rate_hz;
+	__u32 reserved;
+};
+
+/* SET_MODEL. Takes effect at a tick border, through a fade. */
+struct phantom_model {
+	__u32 model; /* PHANTOM_MODEL_... */
+	__u32 newton_steps; /* projected: 0 ... 3 */
+	__u32 combine; /* PHANTOM_COMBINE_... */
+	__u32 proxy; /* PHANTOM_PROXY_... */
+	__u32 arith; /* PHANTOM_ARITH_... */
+	__u32 reserved[3];
+};
+
+/*
+ * START. Zero in a field takes the module's default, which is on: a person holds the arm.
+ * Defaults in brackets.
+ */
+#define PHANTOM_START_LIMITS_OFF                                                                   \
+	(1U << 0) /* no clamp, slew, ramp, speed or stall limit; SIM only */
+#define PHANTOM_START_FLAGS_KNOWN PHANTOM_START_LIMITS_OFF
+struct phantom_start {
+	__u32 flags;
+	__u32 max_force_un; /* clamp of |F|, direction kept [the device's] */
+	__u32 slew_un_per_ms; /* largest change of F [1 N per ms] */
+	__u32 ramp_ms; /* of START, STOP and CLEAR_FAULT [250 ms] */
+	__u32 max_speed_um_s; /* overspeed fault [5 m/s] */
+	__u32 stall_us; /* stall fault [20000 us] */
+	__u32 stale_ms; /* a set older than this fades [100 ms] */
+	__u32 reserved;
+};
+
+/*
+ * One triangle of a set, with what contact needs of its surroundings. Counter-clockwise seen
+ * from outside.
+ */
+#define PHANTOM_PATCH_NONE 0xffffffffU /* no neighbour in this set */
+#define PHANTOM_PATCH_FACE 0 /* a face of the mesh */
+struct phantom_patch {
+	__s32 vertex_nm[3][3]; /* [corner][axis], relative to the set's origin */
+	__s32 normal_q30[3][3]; /* [corner][axis], unit */
+	__u32 vertex[3]; /* vertex numbers, unique in the scene: equal = the same corner */
+	__u32 face; /* face number, unique in the scene and the same in every set */
+	__u32 neighbour[3]; /* index in this set over edge i (corner i to i+1), or NONE */
+	__u32 object; /* index into the set's objects */
+	__u32 material; /* index into the set's materials */
+	__u32 kind; /* PHANTOM_PATCH_FACE */
+	__u32 reserved[2];
+};
+
+struct phantom_material {
+	__u32 stiffness_mn_mm; /* k */
+	__u32 radius_nm; /* R, contact radius; > 0 */
+	__u32 damping_mns_m; /* PHANTOM_EFFECT_DAMPING; else 0 */
+	__u32 effects; /* PHANTOM_EFFECT_... this material names */
+	__u32 reserved[4];
+};
+
+/* Where an object is. v1: rotation (1,0,0,0), all else zero but number and revision. */
+struct phantom_object {
+	__u32 object; /* number in the scene */
+	__u32 revision; /* of its geometry; another number crossfades */
+	__s64 translation_nm[3];
+	__s32 rotation_q30[4]; /* unit quaternion w x y z */
+	__s32 velocity_nm_s[3];
+	__s32 angular_velocity_urad_s[3];
+	__u32 reserved[2];
+};
+
+/* SUBMIT_SET. */
+struct phantom_set {
+	__u64 id; /* > 0, larger than the one before */
+	__s64 origin_nm[3];
+	__s32 centre_nm[3]; /* coverage, relative to origin */
+	__u32 radius_nm; /* coverage; 0 = covers nothing: fades to zero */
+	__u32 patch_count;
+	__u32 material_count;
+	__u32 object_count;
+	__u32 effects; /* union of the materials' effects, exactly */
+	__u32 level; /* of detail; 0 is the mesh itself */
+	__u32 level_error_nm; /* how far that level lies from the mesh */
+	__u32 flags; /* 0 */
+	__u32 reserved;
+	__u64 patches; /* struct phantom_patch[patch_count] */
+	__u64 materials; /* struct phantom_material[material_count] */
+	__u64 objects; /* struct phantom_object[object_count] */
+};
+
+/* SIM_MOVE. Where the simulated device's tip is from the next tick on. */
+struct phantom_sim_move {
+	__s64 tip_nm[3];
+	__u64 reserved;
+};
+
+/* phantom_tick.flags and phantom_status.flags */
+#define PHANTOM_TICK_INSIDE (1U << 0) /* the tip is below the surface, the proxy holds it */
+#define PHANTOM_TICK_UNCOVERED (1U << 1) /* no set covers the tip: no force is computed */
+#define PHANTOM_TICK_STALE (1U << 2) /* the set is older than start.stale_ms */
+#define PHANTOM_TICK_FADING (1U << 3) /* the force fades from one target to another */
+#define PHANTOM_TICK_CLAMPED (1U << 4) /* max_force_un cut the force */
+#define PHANTOM_TICK_SLEWED (1U << 5) /* slew_un_per_ms held the force back */
+#define PHANTOM_TICK_RAMPING (1U << 6) /* START, STOP or CLEAR_FAULT is ramping */
+#define PHANTOM_TICK_SATURATED (1U << 7) /* a conversion saturated */
+
+/* One record of read(): one tick. */
+struct phantom_tick {
+	__u64 tick; /* number, from START; a gap = ticks missed or records lost */
+	__u64 time_ns;
+	__u64 set_id; /* of the set the force came from; 0 = none */
+	__s64 tip_nm[3];
+	__s64 proxy_nm[3]; /* = tip outside the surface */
+	__s32 force_un[3]; /* as sent to the device */
+	__u32 contacts;
+	__u32 flags; /* PHANTOM_TICK_... */
+	__u32 faults; /* PHANTOM_FAULT_..., latched */
+	__u32 latency_ns; /* wake-up after the period's begin */
+	__u32 duration_ns; /* of the whole tick */
+};
+
+/*
+ * A histogram of durations: bucket b < 8 counts b ns; above, 8 buckets an octave:
+ *   b = 8 (e - 2) + m   counts   (8 + m) 2^(e-3) ... (9 + m) 2^(e-3) ns,  e = floor(log2 ns) >= 3, m = 0 ... 7
+ * Counters stop at 2^32 - 1.
+ */
+#define PHANTOM_HISTOGRAM_BUCKETS 240
+struct phantom_histogram {
+	__u32 count[PHANTOM_HISTOGRAM_BUCKETS];
+	__u32 max_ns;
+	__u32 reserved;
+};
+
+/*
+ * The status page. sequence is odd while the module writes it: read sequence (until even), copy,
+ * read sequence again, repeat if it changed. Only state ... faults are consistent with each other;
+ * histograms may be a tick ahead.
+ */
+struct phantom_status {
+	__u32 sequence;
+	__u32 abi_version;
+	__u32 state; /* PHANTOM_STATE_... */
+	__u32 faults; /* PHANTOM_FAULT_..., latched */
+	__u32 rate_hz;
+	__u32 isa; /* PHANTOM_ISA_... */
+	struct phantom_model model;
+	__u64 tick; /* ticks since START */
+	__u64 missed; /* periods skipped since START */
+	__u64 start_ns; /* when START came */
+	__u64 time_ns; /* of this tick */
+	__u64 busy_ns; /* sum of tick durations since START: idle = 1 - busy / (time - start) */
+	__s64 tip_nm[3];
+	__s64 proxy_nm[3];
+	__s32 velocity_nm_s[3];
+	__s32 normal_q30[3]; /* of the contact; zero without one */
+	__s32 force_un[3];
+	__u32 contacts;
+	__u32 flags; /* PHANTOM_TICK_... */
+	__u32 set_patches;
+	__u64 set_id;
+	__u64 set_time_ns; /* when the tick took the set: age = time - set_time */
+	__u64 sets; /* sets taken since START */
+	__u64 fades; /* fades begun since START */
+	__u64 saturated; /* conversions that saturated since START */
+	__u64 refused; /* patches that could not be computed, summed over sets */
+	__u64 clamped; /* ticks with the force clamped */
+	__u64 sections; /* float sections opened */
+	__u32 set_level;
+	__u32 set_level_error_nm;
+	__u32 section_max_ns; /* the longest float section */
+	__u32 reserved[9];
+	struct phantom_histogram latency;
+	struct phantom_histogram duration;
+	struct phantom_histogram section;
+};
+
+#define PHANTOM_IOC_MAGIC 0xE7
+
+#define PHANTOM_GET_INFO _IOR(PHANTOM_IOC_MAGIC, 0x00, struct phantom_info)
+#define PHANTOM_SET_RATE _IOW(PHANTOM_IOC_MAGIC, 0x01, struct phantom_rate)
+#define PHANTOM_SET_MODEL _IOW(PHANTOM_IOC_MAGIC, 0x02, struct phantom_model)
+#define PHANTOM_START _IOW(PHANTOM_IOC_MAGIC, 0x03, struct phantom_start)
+#define PHANTOM_STOP _IO(PHANTOM_IOC_MAGIC, 0x04)
+#define PHANTOM_SUBMIT_SET _IOW(PHANTOM_IOC_MAGIC, 0x05, struct phantom_set)
+#define PHANTOM_SIM_MOVE _IOW(PHANTOM_IOC_MAGIC, 0x06, struct phantom_sim_move)
+#define PHANTOM_CLEAR_FAULT _IO(PHANTOM_IOC_MAGIC, 0x07)
+
+#endif /* PHANTOM_ABI_H */

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Device: the one class that talks to phantom_rt, be it the kernel's or the user-mode build of the
+// same module. Calls are those of phantom_abi.h; errors are sentences.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "phantom_abi.h"
+
+namespace phantom::device {
+
+/// A set of patches ready to be submitted: owns what phantom_set points to.
+struct PatchSet {
+    phantom_set header{}; ///< counts and pointers are filled in by Device::submit()
+    std::vector<phantom_patch> patches;
+    std::vector<phantom_material> materials;
+    std::vector<phantom_object> objects;
+};
+
+struct UsermodeOptions {
+    bool virtual_clock = false;
+    std::uint32_t rate_hz = 1000;
+    int cpu = -1;
+    std::uint32_t max_force_un = 0;       ///< 0: the module's default
+    std::uint32_t isa = PHANTOM_ISA_NONE; ///< NONE: best the CPU has
+    std::uint32_t patches_max = 0;        ///< 0: PHANTOM_PATCHES_MAX
+};
+
+enum class Access { feeder, observer };
+
+class Device {
+  public:
+    /// The kernel's device. Fails with a sentence (not loaded, no permission, busy feeder).
+    static Result<Device> open_kernel(Access access, const std::string& node = PHANTOM_DEVICE_NODE);
+    /// A machine of our own.
+    static Result<Device> open_usermode(const UsermodeOptions& options);
+
+    Device(Device&&) noexcept;
+    Device& operator=(Device&&) noexcept;
+    ~Device(); ///< closes; the module ramps the force down
+
+    [[nodiscard]] bool is_kernel() const;
+    [[nodiscard]] const phantom_info& info() const;
+
+    Status set_rate(std::uint32_t hz);
+    Status set_model(const phantom_model& model);
+    Status start(const phantom_start& start);
+    Status stop();
+    /// Fills header.id (last + 1), counts, effects and pointers; EAGAIN is retried for up to 50 ms.
+    Status submit(PatchSet& set);
+    Status move_simulated_tip(const std::array<std::int64_t, 3>& tip_nm);
+    Status clear_fault();
+
+    /// A consistent copy of the status page.
+    [[nodiscard]] phantom_status status() const;
+    /// Waits until a new set is needed or a fault came (true), or the time is over (false).
+    Result<bool> wait_event(std::chrono::milliseconds timeout);
+    /// Records since the last call, at most 4096; empty when there are none.
+    Result<std::vector<phantom_tick>> read_ticks();
+
+    /// Virtual clock only.
+    Status step(std::uint32_t ticks);
+    /// "SCHED_FIFO, CPU 1", or why not; for reports. Empty for the kernel.
+    [[nodiscard]] std::string thread_text() const;
+
+  private:
+    struct Transport;
+    struct KernelTransport;
+    struct UsermodeTransport;
+    explicit Device(std::unique_ptr<Transport> transport);
+    std::unique_ptr<Transport> transport_;
+    phantom_info info_{};
+    std::uint64_t last_set_id_ = 0;
+};
+
+/// Durations behind a histogram: value below which `fraction` of the counts lie, in ns (upper end of the
+/// bucket).
+double percentile_ns(const phantom_histogram& histogram, double fraction);
+std::uint64_t total_count(const phantom_histogram& histogram);
+
+const char* state_name(std::uint32_t state);
+const char* isa_name(std::uint32_t isa);
+std::string fault_names(std::uint32_t faults);
+
+/// Words of the command line ("paper", "projected", "bounded", ...) to numbers; the error lists the words.
+Result<phantom_model> model_from_words(const std::string& model, const std::string& combine,
+                                       const std::string& proxy, const std::string& arith, int steps);
+
+} // namespace phantom::device

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What queries take and give.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fdh/hull.hpp"
+
+namespace phantom::fdh {
+
+/// One triangle near the query point.
+struct Hit {
+    std::uint32_t object = 0;   ///< 0 in a query of a single tree
+    std::uint32_t triangle = 0; ///< index in the MeshView it was built from
+    double distance = 0;        ///< from the query point to the nearest point of the triangle
+};
+
+/// Counters of one query, for benchmarks.
+struct QueryCounts {
+    std::uint64_t nodes = 0, leaves = 0, triangles = 0;
+};
+
+/// Result of "the N nearest within a radius": hits by ascending (distance, object, triangle), and the radius
+/// they cover: every triangle nearer than `coverage` is among the hits. coverage = max_radius when fewer
+/// than N triangles were found, otherwise the distance of the nearest one left out, rounded down so that it
+/// holds.
+struct Nearest {
+    std::vector<Hit> hits;
+    double coverage = 0;
+    QueryCounts counts;
+    void clear()
+    {
+        hits.clear();
+        coverage = 0;
+        counts = {};
+    }
+};
+
+} // namespace phantom::fdh

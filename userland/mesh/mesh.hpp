@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Triangle meshes as the rest of the user side sees them: plain arrays, doubles, millimetres.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace phantom::mesh {
+
+using Vec3 = std::array<double, 3>;
+using Triple = std::array<std::uint32_t, 3>;
+
+inline constexpr std::uint32_t no_neighbour = 0xffffffffU;
+
+/// What a file gave, before anything was done to it: triangles in file order (polygons fanned).
+struct Soup {
+    std::vector<Vec3> vertices;       ///< file units
+    std::vector<Triple> faces;        ///< counter-clockwise, indices into vertices
+    std::vector<Vec3> normals;        ///< unit normals the file gave; empty when it gave none
+    std::vector<Triple> face_normals; ///< per face corner, indices into normals; empty with normals
+};
+
+/// A mesh ready to be touched. Unit normals per corner, so that a crease can keep two.
+struct Mesh {
+    std::vector<Vec3> vertices;       ///< mm
+    std::vector<Triple> faces;        ///< counter-clockwise seen from outside
+    std::vector<Vec3> normals;        ///< unit
+    std::vector<Triple> face_normals; ///< per face corner, indices into normals
+    std::vector<Triple> neighbours;   ///< face over edge i (corner i to i+1), or no_neighbour
+};
+
+struct Bounds {
+    Vec3 low{}, high{};
+    /// Length of the longest side.
+    [[nodiscard]] double extent() const;
+    [[nodiscard]] double diagonal() const;
+};
+Bounds bounds_of(const std::vector<Vec3>& vertices);
+
+} // namespace phantom::mesh

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The paper's preprocessing (Kabelac 2001, section 4.1): a soup becomes a mesh that can be touched.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "mesh/mesh.hpp"
+
+namespace phantom::mesh {
+
+struct PrepareOptions {
+    bool full = true;         ///< false: faces and normals as the file gives them; missing normals
+                              ///< are angle-weighted, no crease; nothing welded, dropped or split
+    double scale = 1.0;       ///< file units to mm; before fit
+    double fit_mm = 0.0;      ///< > 0: scale the longest side to this and centre at the origin
+    double weld_mm = 0.0;     ///< distance under which vertices are one; 0: only equal ones
+    double crease_deg = 60.0; ///< edges sharper than this keep two normals
+    double split_mm = 0.0;    ///< edges longer than this are bisected; 0: off
+    std::function<void(double)> progress{}; ///< 0 ... 1, may be empty
+};
+
+/// What was found and what was done about it. Every input face is in faces or in exactly one dropped count.
+struct Report {
+    std::uint64_t vertices_read = 0, faces_read = 0;
+    std::uint64_t vertices_welded = 0;
+    std::uint64_t faces_zero_area = 0; ///< dropped: two corners equal or collinear
+    std::uint64_t faces_duplicate = 0; ///< dropped: same three vertices, same sense
+    std::uint64_t faces_flipped = 0;   ///< turned so that neighbours agree
+    std::uint64_t components = 0;
+    std::uint64_t components_turned = 0; ///< closed and inside out: turned outward
+    std::uint64_t nonmanifold_edges = 0; ///< shared by more than two faces
+    std::uint64_t boundary_edges = 0;    ///< with one face
+    std::uint64_t crease_edges = 0;
+    std::uint64_t normals_repaired = 0;    ///< vertex normals that cancelled to zero or did not fit
+    std::uint64_t faces_split = 0;         ///< faces added by bisection
+    std::uint64_t vertices = 0, faces = 0; ///< of the result
+    double edge_min_mm = 0, edge_median_mm = 0, edge_max_mm = 0;
+    bool watertight = false; ///< every edge has exactly two faces
+    double size_mm[3] = {0, 0, 0};
+    std::vector<std::string> warnings; ///< each names the option that helps
+};
+
+struct Prepared {
+    Mesh mesh;
+    Report report;
+};
+
+/// `name` stands in errors. Fails when no usable face is left.
+Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::string& name);
+
+/// Writes binary little-endian PLY with doubles and vertex normals (corners with different
+/// normals become vertices of their own); atomically (temporary file, then rename).
+Status write_ply(const Mesh& mesh, const std::string& file);
+
+} // namespace phantom::mesh

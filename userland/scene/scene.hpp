@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A scene: objects with poses and materials, and what the device and the servo shall do.
+// Read from a TOML scene file, or made round a single mesh file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "fdh/scene_tree.hpp"
+#include "mesh/mesh.hpp"
+#include "mesh/prepare.hpp"
+
+namespace phantom::scene {
+
+struct Material {
+    std::string name = "default";
+    double stiffness_n_mm = 1.0;          ///< k
+    double radius_mm = 1.0;               ///< R, contact radius
+    std::optional<double> damping_ns_m{}; ///< N*s/m; the effect is called for only when named
+};
+
+struct Object {
+    std::string name;
+    std::filesystem::path file;
+    mesh::Mesh mesh; ///< object frame, mm
+    mesh::Report report;
+    fdh::Pose pose;
+    std::uint32_t material = 0;                     ///< index into Scene::materials
+    std::uint32_t first_face = 0, first_vertex = 0; ///< scene-wide numbers of face 0 and vertex 0
+};
+
+struct DeviceSettings {
+    std::optional<double> max_force_n;
+    std::optional<double> slew_n_per_ms;
+    std::optional<double> ramp_ms;
+};
+
+struct ServoSettings {
+    std::optional<double> rate_hz;
+    std::optional<std::string> model, combine, proxy, arith; ///< words as on the command line
+    std::optional<int> steps;
+};
+
+struct Scene {
+    std::filesystem::path file;
+    std::vector<Object> objects;
+    std::vector<Material> materials; ///< at least one
+    DeviceSettings device;
+    ServoSettings servo;
+
+    [[nodiscard]] std::uint64_t triangles() const;
+    [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
+    [[nodiscard]] double max_radius_mm() const;
+    /// Names of the effects that some material calls for ("damping"), and of those that none does.
+    [[nodiscard]] std::vector<std::string> effects_called_for() const;
+    [[nodiscard]] std::vector<std::string> effects_not_called_for() const;
+};
+
+struct LoadOptions {
+    mesh::PrepareOptions prepare;
+    std::optional<std::string> unit;      ///< "mm", "m", "cm", "in", "um"; default mm, or the scene's
+    std::optional<double> stiffness_n_mm; ///< replaces every material's
+    std::optional<double> radius_mm;
+};
+
+/// SCENE is a mesh file or a .toml scene file. Errors: file, line, key and what was expected.
+Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options);
+
+/// The two-level hierarchy of a scene.
+template <int K>
+fdh::SceneTree<K> build_tree(const Scene& scene, unsigned threads = 0);
+
+} // namespace phantom::scene
