@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A scene being touched: scene, hierarchy, device, feeder thread and control socket in one object.
+// `fdhctl load` and `fdhview` are two faces of it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "device/device.hpp"
+#include "feeder/feeder.hpp"
+#include "scene/scene.hpp"
+
+namespace phantom::feeder {
+
+struct SessionOptions {
+    std::filesystem::path scene;
+    scene::LoadOptions load;
+    FeederOptions feeder;
+    bool force_usermode = false;                ///< do not look for the kernel's device
+    std::optional<std::uint32_t> rate_hz;       ///< else the scene's [servo] rate, else 1000
+    std::optional<phantom_model> model;         ///< else the scene's [servo], else projected/bounded/...
+    phantom_start start{};                      ///< zero fields: the scene's [device], else the module's defaults
+    bool control_socket = true;                 ///< let `fdhctl status|rate|model|stop` reach us
+    std::function<void(const std::string&)> say{}; ///< progress lines for a person, may be empty
+};
+
+class Session {
+  public:
+    /// Reads and prepares the scene, builds the hierarchy, opens the device (kernel, else user mode, and says which).
+    static Result<Session> open(SessionOptions options);
+    Session(Session&&) noexcept;
+    Session& operator=(Session&&) noexcept;
+    ~Session(); ///< stop()
+
+    /// Feeds a first set, starts the servo (force ramps up), the feeder thread and the control socket.
+    Status start();
+    /// Ramps the force down, stops servo and threads. Idempotent.
+    Status stop();
+    [[nodiscard]] bool running() const;
+    /// True once somebody asked for the end over the control socket.
+    [[nodiscard]] bool stop_requested() const;
+
+    [[nodiscard]] const scene::Scene& scene() const;
+    [[nodiscard]] const fdh::SceneTree<14>& tree() const;
+    [[nodiscard]] device::Device& device();
+    [[nodiscard]] Feeder& feeder();
+    /// Where the time from open() to the first force went, in ms.
+    struct Timings {
+        double read_prepare_ms = 0, build_ms = 0, first_force_ms = 0;
+    };
+    [[nodiscard]] Timings timings() const;
+
+  private:
+    struct Impl;
+    explicit Session(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace phantom::feeder
