@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# The front door. On a fresh Debian machine `make demo` and `make test` need nothing but make.
+# Everything built goes to build/.
+
+BUILD   := build
+RELEASE := $(BUILD)/release
+JOBS    ?= $(shell nproc)
+CMAKE   := cmake -G Ninja -S userland
+
+.PHONY: help all demo test modules install bench lint clean
+
+help: ## this list
+	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
+
+all: ## build every program into build/bin
+	@tools/bootstrap build
+	@mkdir -p $(BUILD)
+	@$(MAKE) --no-print-directory programs
+
+.PHONY: programs
+programs:
+	@$(CMAKE) -B $(RELEASE) -DCMAKE_BUILD_TYPE=Release -DPHANTOM_TESTS=OFF \
+	  -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$(CURDIR)/$(BUILD)/bin >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
+	@cmake --build $(RELEASE) -j $(JOBS)
+
+demo: ## touch the Stanford bunny: live status, picture, chart, trace
+	@tools/bootstrap demo
+	@mkdir -p $(BUILD)
+	@$(MAKE) --no-print-directory programs
+	@tools/demo
+
+test: ## every test that needs no VM and no root, also under ASan and UBSan
+	@tools/bootstrap test
+	@tools/test
+
+modules: ## build/modules/RELEASE/phantom_rt.ko for Debian's RT kernels, or KDIR=/path/to/headers
+	@tools/bootstrap modules
+	@$(MAKE) --no-print-directory -C kmod modules
+
+install: all ## programs and scenes to PREFIX (/usr/local)
+	@cmake --install $(RELEASE) --prefix $(or $(PREFIX),/usr/local)
+
+bench: ## query, tick and load times on the bunny
+	@tools/bootstrap bench
+	@mkdir -p $(BUILD)
+	@$(MAKE) --no-print-directory programs
+	@$(BUILD)/bin/fdhctl bench scenes/bunny.toml
+
+lint: ## clang-format, clang-tidy, shellcheck
+	@tools/bootstrap lint
+	@tools/lint
+
+clean: ## remove what was built
+	rm -rf $(BUILD)
