@@ -3,6 +3,7 @@
 // same module. Calls are those of phantom_abi.h; errors are sentences.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -46,6 +47,10 @@ class Device {
     ~Device(); ///< closes; the module ramps the force down
 
     [[nodiscard]] bool is_kernel() const;
+    /// True for a user-mode machine whose time passes only in step().
+    [[nodiscard]] bool has_virtual_clock() const;
+    /// "/dev/phantom_rt0" or "user mode".
+    [[nodiscard]] const std::string& name() const;
     [[nodiscard]] const phantom_info& info() const;
 
     Status set_rate(std::uint32_t hz);
@@ -54,6 +59,9 @@ class Device {
     Status stop();
     /// Fills header.id (last + 1), counts, effects and pointers; EAGAIN is retried for up to 50 ms.
     Status submit(PatchSet& set);
+    /// As submit(), but false at once when every slot is in use (a fade holds one): the set before it
+    /// stays. For a virtual clock, where waiting frees nothing.
+    Result<bool> try_submit(PatchSet& set);
     Status move_simulated_tip(const std::array<std::int64_t, 3>& tip_nm);
     Status clear_fault();
 
@@ -74,6 +82,7 @@ class Device {
     struct KernelTransport;
     struct UsermodeTransport;
     explicit Device(std::unique_ptr<Transport> transport);
+    static Result<Device> greet(std::unique_ptr<Transport> transport);
     std::unique_ptr<Transport> transport_;
     phantom_info info_{};
     std::uint64_t last_set_id_ = 0;
@@ -84,8 +93,14 @@ class Device {
 double percentile_ns(const phantom_histogram& histogram, double fraction);
 std::uint64_t total_count(const phantom_histogram& histogram);
 
+/// The upper end of a bucket of phantom_histogram, in ns.
+double bucket_end_ns(std::uint32_t bucket);
+
 const char* state_name(std::uint32_t state);
 const char* isa_name(std::uint32_t isa);
+const char* device_name(std::uint32_t device);
+/// "projected, 2 Newton steps, combine bounded, proxy paper, arith float"
+std::string model_text(const phantom_model& model);
 std::string fault_names(std::uint32_t faults);
 
 /// Words of the command line ("paper", "projected", "bounded", ...) to numbers; the error lists the words.
