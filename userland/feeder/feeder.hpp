@@ -2,8 +2,9 @@
 // The slow task: chooses the triangles near the tip and hands them to the servo as a set.
 #pragma once
 
-#include <atomic>
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <stop_token>
 #include <vector>
 
@@ -14,17 +15,17 @@
 namespace phantom::feeder {
 
 struct FeederOptions {
-    std::uint32_t budget = 64; ///< triangles in a set; all: every triangle of the scene, user mode only
-    bool all = false;
-    bool grow_budget =
-        true; ///< double the budget (to 512) while the set does not cover R and the way to the next
+    std::uint32_t budget = 64; ///< triangles in a set
+    bool all = false;          ///< one set with every triangle of the scene; user mode only
+    /// Double the budget (to PHANTOM_PATCHES_MAX) while the set does not cover R and the way to the next.
+    bool grow_budget = true;
     double search_radius_mm = 50.0; ///< no triangle farther than this is looked for
     double rate_hz = 250.0;         ///< of run()
 };
 
 /// What one round did.
 struct FeedReport {
-    std::uint64_t set_id = 0;
+    std::uint64_t set_id = 0; ///< 0: every slot of the servo was in use, the set before stays
     std::uint32_t patches = 0;
     double coverage_mm = 0;
     double query_us = 0; ///< hull query alone
@@ -32,26 +33,45 @@ struct FeedReport {
     std::vector<fdh::Hit> hits;
 };
 
-/// Turns hits into a set: world coordinates, origin near the centre, adjacency inside the set.
+/// Turns hits into a set: world coordinates, origin = the centre, adjacency inside the set. Patches are
+/// ordered by object and face, whatever the order of the hits: the same triangles give the same bits.
 class SetBuilder {
   public:
     explicit SetBuilder(const scene::Scene& scene);
-    /// centre in world mm; coverage in mm as the query gave it.
+    /// hits by ascending distance; centre in world mm; coverage in mm as the query gave it. Materials or
+    /// objects beyond what a set can carry cut it short: the coverage then ends at the first left out.
     void build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm, double coverage_mm,
                device::PatchSet& out);
+    /// Every triangle of the scene, covering everything. centre in world mm.
+    void build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out);
 
   private:
+    void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out) const;
+    /// False when the set has no room for the face's material or object.
+    bool claim(std::uint32_t object, device::PatchSet& out);
+    void fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out);
+    phantom_patch patch(std::uint32_t object, std::uint32_t face,
+                        const std::array<std::int64_t, 3>& origin_nm) const;
+
     const scene::Scene& scene_;
-    std::vector<std::uint32_t> slot_; ///< scratch: face number to index in the set
+    std::vector<std::uint32_t> slot_;                 ///< scratch: face number to index in the set
+    std::vector<std::uint32_t> material_slot_;        ///< scratch: scene material to index in the set
+    std::vector<std::uint32_t> object_slot_;          ///< scratch: scene object to index in the set
+    std::vector<std::array<std::uint32_t, 2>> faces_; ///< scratch: (object, face)
 };
 
-/// One feeder per device. Not thread-safe but for last().
+/// Whether sets can carry this scene: no triangle may reach farther from the tip than a set's coordinates
+/// (1 m) go, and with `all` the whole scene must lie within them.
+Status check_reach(const scene::Scene& scene, const FeederOptions& options);
+
+/// One feeder per device. Not thread-safe but for totals() and last().
 class Feeder {
   public:
     Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device::Device& device,
            const FeederOptions& options);
 
-    /// Queries round the tip (inside: round the middle of tip and proxy) and submits one set.
+    /// Queries round the tip (inside: round the middle of tip and proxy) and submits one set. The set also
+    /// covers the tip of the round before, so that the servo sees what the path between them crosses.
     Result<FeedReport> feed(const std::array<double, 3>& tip_mm, const std::array<double, 3>& proxy_mm,
                             bool inside);
     /// As above, with tip and proxy from the status page.

@@ -19,17 +19,18 @@ struct SessionOptions {
     std::filesystem::path scene;
     scene::LoadOptions load;
     FeederOptions feeder;
-    bool force_usermode = false;                ///< do not look for the kernel's device
-    std::optional<std::uint32_t> rate_hz;       ///< else the scene's [servo] rate, else 1000
-    std::optional<phantom_model> model;         ///< else the scene's [servo], else projected/bounded/...
-    phantom_start start{};                      ///< zero fields: the scene's [device], else the module's defaults
-    bool control_socket = true;                 ///< let `fdhctl status|rate|model|stop` reach us
+    bool force_usermode = false;          ///< do not look for the kernel's device
+    std::optional<std::uint32_t> rate_hz; ///< else the scene's [servo] rate, else 1000
+    std::optional<phantom_model> model;   ///< else the scene's [servo], else projected/bounded/...
+    phantom_start start{};                ///< zero fields: the scene's [device], else the module's defaults
+    bool control_socket = true;           ///< let `fdhctl status|rate|model|stop` reach us
     std::function<void(const std::string&)> say{}; ///< progress lines for a person, may be empty
 };
 
 class Session {
   public:
-    /// Reads and prepares the scene, builds the hierarchy, opens the device (kernel, else user mode, and says which).
+    /// Reads and prepares the scene, builds the hierarchy, opens the device (kernel, else user mode, and says
+    /// which).
     static Result<Session> open(SessionOptions options);
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
@@ -42,6 +43,8 @@ class Session {
     [[nodiscard]] bool running() const;
     /// True once somebody asked for the end over the control socket.
     [[nodiscard]] bool stop_requested() const;
+    /// Why the feeder ended by itself; nothing while all is well.
+    [[nodiscard]] std::optional<Error> failure() const;
 
     [[nodiscard]] const scene::Scene& scene() const;
     [[nodiscard]] const fdh::SceneTree<14>& tree() const;
@@ -52,6 +55,9 @@ class Session {
         double read_prepare_ms = 0, build_ms = 0, first_force_ms = 0;
     };
     [[nodiscard]] Timings timings() const;
+    /// Rate and model as chosen at open().
+    [[nodiscard]] std::uint32_t rate_hz() const;
+    [[nodiscard]] const phantom_model& model() const;
 
   private:
     struct Impl;

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The slow loop. How far a set must reach, seen from its centre C:
+//
+//   outside   C = tip                     need = R + way
+//   inside    C = (tip + proxy) / 2       need = |tip - proxy| / 2 + R + way
+//
+// with R the largest contact radius of the scene and `way` how far the tip may go until the next set is
+// there: as far as it came since the last one. The tip of the round before must be covered as well: the
+// servo looks for crossings on the path from there to here.
+#include "feeder/feeder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+namespace phantom::feeder {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Vector = std::array<double, 3>;
+
+constexpr double mm_per_nm = 1e-6;
+
+/// Two rounds are never closer than this part of the period, however loud the servo calls: a tip that no set
+/// can cover (more than 512 triangles within R) keeps asking.
+constexpr int early_rounds_max = 4;
+
+/// How many samples Feeder::Totals keeps.
+constexpr std::size_t samples_max = 65536;
+
+/// The servo takes a set within a tick. On top of the need, as a fraction of R.
+constexpr double margin_of_radius = 0.05;
+
+double distance(const Vector& a, const Vector& b)
+{
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+double microseconds(Clock::duration d)
+{
+    return std::chrono::duration<double, std::micro>(d).count();
+}
+
+/// A ring of the last samples_max values.
+struct Samples {
+    std::vector<float> values;
+    std::size_t next = 0;
+
+    void add(double value)
+    {
+        if (values.size() < samples_max)
+            values.push_back(static_cast<float>(value));
+        else
+            values[next] = static_cast<float>(value);
+        next = (next + 1) % samples_max;
+    }
+};
+
+} // namespace
+
+struct Feeder::Impl {
+    Impl(const scene::Scene& scene_, const fdh::SceneTree<14>& tree_, device::Device& device_,
+         const FeederOptions& options_)
+        : scene(scene_),
+          tree(tree_),
+          device(device_),
+          options(options_),
+          builder(scene_),
+          radius_mm(scene_.max_radius_mm()),
+          budget(first_budget())
+    {
+    }
+
+    /// Options as wide as the module allows; user mode may raise patches_max.
+    std::uint32_t budget_max() const { return std::max(1U, device.info().patches_max); }
+    std::uint32_t first_budget() const { return std::clamp(options.budget, 1U, budget_max()); }
+    std::uint32_t growth_max() const
+    {
+        return options.grow_budget
+                   ? std::max(first_budget(), std::min<std::uint32_t>(PHANTOM_PATCHES_MAX, budget_max()))
+                   : first_budget();
+    }
+
+    struct Wanted {
+        Vector centre;
+        double need_mm; ///< coverage from centre
+    };
+    Wanted wanted(const Vector& tip, const Vector& proxy, bool inside) const
+    {
+        const double way = has_previous ? distance(tip, previous) : 0.0;
+        Vector centre = tip;
+        double need = radius_mm * (1.0 + margin_of_radius) + way;
+        if (inside) {
+            for (int axis = 0; axis < 3; ++axis)
+                centre[axis] = 0.5 * (tip[axis] + proxy[axis]);
+            need += distance(tip, centre);
+        }
+        if (has_previous)
+            need = std::max(need, distance(previous, centre));
+        return {centre, need};
+    }
+
+    /// The nearest triangles, as many as the need asks for.
+    void query(const Wanted& want)
+    {
+        // Twice search_radius is what check_reach() leaves room for.
+        const double search_mm =
+            std::clamp(want.need_mm, options.search_radius_mm, 2.0 * options.search_radius_mm);
+        for (;;) {
+            nearest.clear();
+            tree.nearest(want.centre, budget, search_mm, nearest);
+            if (nearest.coverage >= want.need_mm || nearest.hits.size() < budget || budget >= growth_max())
+                break;
+            budget = std::min(2 * budget, growth_max());
+        }
+        // Back to smaller sets once there is room: a set of half the triangles covers about 0.7 of the
+        // radius.
+        if (budget > first_budget() && nearest.coverage > 2.0 * want.need_mm)
+            budget = std::max(first_budget(), budget / 2);
+    }
+
+    /// Hands set over; set_id stays 0 when a virtual clock has no slot free.
+    Status submit(FeedReport& report)
+    {
+        if (device.has_virtual_clock()) {
+            Result<bool> taken = device.try_submit(set);
+            if (!taken)
+                return taken.error();
+            report.set_id = *taken ? set.header.id : 0;
+            return success();
+        }
+        if (Status status = device.submit(set); !status)
+            return status;
+        report.set_id = set.header.id;
+        return success();
+    }
+
+    void publish(const FeedReport& report, Clock::time_point now)
+    {
+        const std::lock_guard lock(mutex);
+        ++totals.sets;
+        query_us.add(report.query_us);
+        if (last_time != Clock::time_point{})
+            interval_ms.add(microseconds(now - last_time) * 1e-3);
+        last_time = now;
+        last = report;
+    }
+
+    const scene::Scene& scene;
+    const fdh::SceneTree<14>& tree;
+    device::Device& device;
+    FeederOptions options;
+    SetBuilder builder;
+    double radius_mm;
+    std::uint32_t budget; ///< of the next query; grows and shrinks
+    Vector previous{};    ///< tip of the round before
+    bool has_previous = false;
+    fdh::Nearest nearest;
+    device::PatchSet set;
+
+    mutable std::mutex mutex; ///< protects what follows
+    Totals totals;
+    Samples query_us, interval_ms;
+    Clock::time_point last_time{};
+    FeedReport last;
+};
+
+Feeder::Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device::Device& device,
+               const FeederOptions& options)
+    : impl_(std::make_shared<Impl>(scene, tree, device, options))
+{
+}
+
+Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::array<double, 3>& proxy_mm,
+                                bool inside)
+{
+    Impl& self = *impl_;
+    FeedReport report;
+    const auto begin = Clock::now();
+    auto queried = begin;
+    if (self.options.all) {
+        const mesh::Bounds bounds = self.scene.bounds();
+        Vector middle{};
+        for (int axis = 0; axis < 3; ++axis)
+            middle[axis] = 0.5 * (bounds.low[axis] + bounds.high[axis]);
+        self.builder.build_all(middle, self.set);
+    } else {
+        const Impl::Wanted want = self.wanted(tip_mm, proxy_mm, inside);
+        self.query(want);
+        queried = Clock::now();
+        self.builder.build(self.nearest.hits, want.centre, self.nearest.coverage, self.set);
+        report.hits = self.nearest.hits;
+    }
+    const auto built = Clock::now();
+    report.patches = static_cast<std::uint32_t>(self.set.patches.size());
+    report.coverage_mm = self.set.header.radius_nm * mm_per_nm;
+    report.query_us = microseconds(queried - begin);
+    report.build_us = microseconds(built - begin);
+    if (Status status = self.submit(report); !status)
+        return status.error();
+    self.previous = tip_mm;
+    self.has_previous = true;
+    self.publish(report, built);
+    return report;
+}
+
+Result<FeedReport> Feeder::feed()
+{
+    const phantom_status status = impl_->device.status();
+    Vector tip, proxy;
+    for (int axis = 0; axis < 3; ++axis) {
+        tip[axis] = static_cast<double>(status.tip_nm[axis]) * mm_per_nm;
+        proxy[axis] = static_cast<double>(status.proxy_nm[axis]) * mm_per_nm;
+    }
+    return feed(tip, proxy, (status.flags & PHANTOM_TICK_INSIDE) != 0);
+}
+
+Status Feeder::run(std::stop_token stop)
+{
+    const auto period = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(1.0 / std::max(1.0, impl_->options.rate_hz)));
+    auto next = Clock::now();
+    while (!stop.stop_requested()) {
+        const auto begin = Clock::now();
+        if (Result<FeedReport> report = feed(); !report)
+            return report.error();
+        next = std::max(next + period, begin);
+        std::this_thread::sleep_until(begin + period / early_rounds_max);
+        const auto rest = std::chrono::floor<std::chrono::milliseconds>(next - Clock::now());
+        if (rest.count() > 0) {
+            Result<bool> event = impl_->device.wait_event(rest);
+            if (!event)
+                return event.error();
+            if (*event) {
+                next = Clock::now();
+                continue;
+            }
+        }
+        std::this_thread::sleep_until(next);
+    }
+    return success();
+}
+
+Feeder::Totals Feeder::totals() const
+{
+    const std::lock_guard lock(impl_->mutex);
+    Totals totals = impl_->totals;
+    totals.query_us = impl_->query_us.values;
+    totals.interval_ms = impl_->interval_ms.values;
+    return totals;
+}
+
+FeedReport Feeder::last() const
+{
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->last;
+}
+
+} // namespace phantom::feeder

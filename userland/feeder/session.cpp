@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "feeder/session.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "feeder/control_socket.hpp"
+#include "feeder/path.hpp"
+#include "feeder/servo_choice.hpp"
+#include "feeder/status_report.hpp"
+
+namespace phantom::feeder {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using nlohmann::json;
+using Vector = std::array<double, 3>;
+
+/// The first tick comes within a period of START; a machine that takes this long has no servo.
+constexpr std::chrono::milliseconds first_tick_patience{1000};
+
+/// STOP ramps for start.ramp_ms (default 250 ms); what is waited for beyond that.
+constexpr std::chrono::milliseconds stop_patience{2000};
+
+/// How far above the scene a simulated tip rests, beyond the contact radius.
+constexpr double rest_height_mm = 10.0;
+
+double milliseconds_since(Clock::time_point begin)
+{
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// The kernel's device, or a machine of our own and the reason for it in `why`.
+Result<device::Device> open_device(const SessionOptions& options, std::uint32_t rate_hz, std::string& why)
+{
+    if (!options.force_usermode) {
+        Result<device::Device> kernel = device::Device::open_kernel(device::Access::feeder);
+        if (kernel)
+            return kernel;
+        // There, ours to use, and yet it does not open: busy or of another version. User mode beside it
+        // would be a surprise.
+        if (::access(PHANTOM_DEVICE_NODE, R_OK | W_OK) == 0) {
+            Error error = kernel.error();
+            error.remedy = error.remedy.empty() ? "--usermode does without it" : error.remedy;
+            return error;
+        }
+        why = kernel.error().what;
+    }
+    device::UsermodeOptions usermode;
+    usermode.rate_hz = rate_hz;
+    usermode.cpu = options.cpu;
+    return device::Device::open_usermode(usermode);
+}
+
+Vector rest_position(const scene::Scene& scene)
+{
+    const mesh::Bounds bounds = scene.bounds();
+    return {0.5 * (bounds.low[0] + bounds.high[0]), 0.5 * (bounds.low[1] + bounds.high[1]),
+            bounds.high[2] + scene.max_radius_mm() + rest_height_mm};
+}
+
+} // namespace
+
+struct Session::Impl {
+    SessionOptions options;
+    std::optional<control::Lock> lock;
+    scene::Scene scene;
+    std::optional<fdh::SceneTree<14>> tree;
+    std::optional<device::Device> device;
+    std::optional<Feeder> feeder;
+    phantom_model model{};
+    std::atomic<std::uint32_t> rate_hz{0};
+    Clock::time_point opened = Clock::now();
+    Timings timings;
+    bool started = false;
+    std::atomic<bool> stop_requested{false};
+    mutable std::mutex mutex; ///< protects failure and model
+    std::optional<Error> failure;
+    std::jthread feeding;
+    std::optional<control::Server> server; ///< last: its thread uses all of the above
+
+    void say(const std::string& line) const
+    {
+        if (options.say)
+            options.say(line);
+    }
+
+    Status load()
+    {
+        Result<scene::Scene> loaded = scene::load(options.scene, options.load);
+        if (!loaded)
+            return loaded.error();
+        scene = std::move(*loaded);
+        timings.read_prepare_ms = milliseconds_since(opened);
+        const auto begin = Clock::now();
+        tree.emplace(scene::build_tree<14>(scene));
+        timings.build_ms = milliseconds_since(begin);
+        const mesh::Bounds bounds = scene.bounds();
+        say(fmt::format("{}: {} triangles, {:.1f} x {:.1f} x {:.1f} mm, read and prepared in {:.0f} ms, "
+                        "FDH14 hierarchy in {:.0f} ms",
+                        options.scene.filename().string(), scene.triangles(), bounds.high[0] - bounds.low[0],
+                        bounds.high[1] - bounds.low[1], bounds.high[2] - bounds.low[2],
+                        timings.read_prepare_ms, timings.build_ms));
+        return check_reach(scene, options.feeder);
+    }
+
+    Status open_servo()
+    {
+        scene::ServoSettings asked = options.servo;
+        if (options.rate_hz)
+            asked.rate_hz = *options.rate_hz;
+        const Result<std::uint32_t> rate = choose_rate(asked, scene.servo);
+        if (!rate)
+            return rate.error();
+        rate_hz = *rate;
+        std::string why;
+        Result<device::Device> opened_device = open_device(options, *rate, why);
+        if (!opened_device)
+            return opened_device.error();
+        device.emplace(std::move(*opened_device));
+        if (!why.empty())
+            say(fmt::format("no kernel device at {} ({}): user mode", PHANTOM_DEVICE_NODE, why));
+        if (Status status = device->set_rate(*rate); !status)
+            return status;
+        Result<phantom_model> chosen =
+            options.model ? Result<phantom_model>(*options.model)
+                          : choose_model(options.servo, scene.servo, device->info().features);
+        if (!chosen)
+            return chosen.error();
+        model = *chosen;
+        if (Status status = device->set_model(model); !status)
+            return status;
+        feeder.emplace(scene, *tree, *device, options.feeder);
+        return success();
+    }
+
+    Status first_force()
+    {
+        if (device->info().device == PHANTOM_DEVICE_SIM) {
+            const Vector tip = options.start_tip_mm.value_or(rest_position(scene));
+            if (Status status = device->move_simulated_tip(to_nanometres(tip)); !status)
+                return status;
+            if (Result<FeedReport> report = feeder->feed(tip, tip, false); !report)
+                return report.error();
+        } else if (Result<FeedReport> report = feeder->feed(); !report) {
+            return report.error();
+        }
+        if (Status status = device->start(choose_start(options.start, scene.device)); !status)
+            return status;
+        started = true;
+        const auto begin = Clock::now();
+        while (device->status().tick == 0) {
+            if (Clock::now() - begin > first_tick_patience)
+                return Error{device->name(), "the servo was started and does not tick"};
+            std::this_thread::sleep_for(std::chrono::microseconds(100));
+        }
+        timings.first_force_ms = milliseconds_since(opened);
+        return success();
+    }
+
+    void begin_feeding()
+    {
+        feeding = std::jthread([this](const std::stop_token& stop) {
+            if (Status status = feeder->run(stop); !status) {
+                const std::lock_guard guard(mutex);
+                failure = status.error();
+            }
+        });
+    }
+
+    /// Ramps down; the feeder goes on until the ramp is over, or the set would be stale before it.
+    Status stop()
+    {
+        server.reset();
+        Status result = success();
+        if (started && device) {
+            result = device->stop();
+            const auto begin = Clock::now();
+            while (result.ok() && device->status().state == PHANTOM_STATE_RUNNING &&
+                   Clock::now() - begin < stop_patience)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            started = false;
+        }
+        if (feeding.joinable()) {
+            feeding.request_stop();
+            feeding.join();
+        }
+        return result;
+    }
+
+    // ---- control socket -------------------------------------------------------------------------
+
+    json status() const
+    {
+        json answer = status_json(device->status());
+        answer["ok"] = true;
+        answer["pid"] = ::getpid();
+        answer["device"] = device->name();
+        answer["thread"] = device->thread_text();
+        answer["scene"] = options.scene.string();
+        answer["triangles"] = scene.triangles();
+        const FeedReport last = feeder->last();
+        answer["feeder"] = {{"patches", last.patches},
+                            {"coverage_mm", last.coverage_mm},
+                            {"query_us", last.query_us},
+                            {"feed_us", last.build_us}};
+        return answer;
+    }
+
+    json change_rate(const json& request)
+    {
+        scene::ServoSettings asked;
+        asked.rate_hz = request.at("rate_hz").get<double>();
+        const Result<std::uint32_t> rate = choose_rate(asked, {});
+        if (!rate)
+            return refusal(rate.error());
+        if (Status status = device->set_rate(*rate); !status)
+            return refusal(status.error());
+        rate_hz = *rate;
+        return {{"ok", true}, {"rate_hz", *rate}};
+    }
+
+    json change_model(const json& request)
+    {
+        const std::lock_guard guard(mutex);
+        scene::ServoSettings asked;
+        const auto word = [&request](const char* key, std::optional<std::string>& out) {
+            if (request.contains(key))
+                out = request.at(key).get<std::string>();
+        };
+        word("model", asked.model);
+        word("combine", asked.combine);
+        word("proxy", asked.proxy);
+        word("arith", asked.arith);
+        if (request.contains("steps"))
+            asked.steps = request.at("steps").get<int>();
+        const Result<phantom_model> chosen = change_model_words(model, asked);
+        if (!chosen)
+            return refusal(chosen.error());
+        if (Status status = device->set_model(*chosen); !status)
+            return refusal(status.error());
+        model = *chosen;
+        return {{"ok", true}, {"model", device::model_text(model)}};
+    }
+
+    static json refusal(const Error& error) { return {{"ok", false}, {"error", error.text()}}; }
+
+    /// One line in, one line out; see control_socket.hpp.
+    std::string answer(const std::string& line)
+    {
+        json reply;
+        try {
+            const json request = json::parse(line);
+            const std::string command = request.at("command").get<std::string>();
+            if (command == "status")
+                reply = status();
+            else if (command == "rate")
+                reply = change_rate(request);
+            else if (command == "model")
+                reply = change_model(request);
+            else if (command == "stop") {
+                stop_requested = true;
+                reply = {{"ok", true}, {"pid", ::getpid()}};
+            } else {
+                reply = refusal({"", fmt::format("unknown command '{}'", command)});
+            }
+        } catch (const json::exception& error) {
+            reply = refusal({"", fmt::format("the request is not understood: {}", error.what())});
+        }
+        return reply.dump();
+    }
+};
+
+Session::Session(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+Session::~Session()
+{
+    if (impl_)
+        (void)impl_->stop();
+}
+
+Result<Session> Session::open(SessionOptions options)
+{
+    auto impl = std::make_unique<Impl>();
+    impl->options = std::move(options);
+    if (impl->options.control_socket) {
+        Result<control::Lock> lock = control::Lock::take();
+        if (!lock)
+            return lock.error();
+        impl->lock.emplace(std::move(*lock));
+    }
+    if (Status status = impl->load(); !status)
+        return status.error();
+    if (Status status = impl->open_servo(); !status)
+        return status.error();
+    return Session(std::move(impl));
+}
+
+Status Session::start()
+{
+    if (Status status = impl_->first_force(); !status)
+        return status;
+    impl_->begin_feeding();
+    if (impl_->options.control_socket) {
+        Impl* impl = impl_.get();
+        Result<control::Server> server =
+            control::Server::listen([impl](const std::string& line) { return impl->answer(line); });
+        if (!server)
+            return server.error();
+        impl_->server.emplace(std::move(*server));
+    }
+    return success();
+}
+
+Status Session::stop()
+{
+    return impl_->stop();
+}
+
+bool Session::running() const
+{
+    return impl_->started && !failure();
+}
+
+bool Session::stop_requested() const
+{
+    return impl_->stop_requested;
+}
+
+std::optional<Error> Session::failure() const
+{
+    const std::lock_guard guard(impl_->mutex);
+    return impl_->failure;
+}
+
+const scene::Scene& Session::scene() const
+{
+    return impl_->scene;
+}
+
+const fdh::SceneTree<14>& Session::tree() const
+{
+    return *impl_->tree;
+}
+
+device::Device& Session::device()
+{
+    return *impl_->device;
+}
+
+Feeder& Session::feeder()
+{
+    return *impl_->feeder;
+}
+
+Session::Timings Session::timings() const
+{
+    return impl_->timings;
+}
+
+std::uint32_t Session::rate_hz() const
+{
+    return impl_->rate_hz;
+}
+
+const phantom_model& Session::model() const
+{
+    return impl_->model;
+}
+
+} // namespace phantom::feeder

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "feeder/feeder.hpp"
+
+namespace phantom::feeder {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+constexpr double nm_per_mm = 1e6;
+constexpr std::uint32_t no_slot = std::numeric_limits<std::uint32_t>::max();
+
+/// Centre and vertices are rounded to whole nm, each by at most sqrt(3)/2 nm. Their sum, rounded up: what a
+/// distance in the set may differ from the scene's, and what the coverage is made smaller by.
+constexpr double rounding_nm = 2.0;
+
+/// Normals shorter than this have no direction left.
+constexpr double normal_length_min = 1e-9;
+
+Vector rotate(const fdh::Pose& pose, const Vector& v)
+{
+    const auto& r = pose.rotation;
+    return {r[0] * v[0] + r[1] * v[1] + r[2] * v[2], r[3] * v[0] + r[4] * v[1] + r[5] * v[2],
+            r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
+}
+
+Vector to_world(const fdh::Pose& pose, const Vector& v)
+{
+    const Vector r = rotate(pose, v);
+    return {r[0] + pose.translation[0], r[1] + pose.translation[1], r[2] + pose.translation[2]};
+}
+
+Vector cross(const Vector& a, const Vector& b)
+{
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double length(const Vector& v)
+{
+    return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+std::int64_t to_nm(double mm)
+{
+    return std::llround(mm * nm_per_mm);
+}
+
+std::uint32_t to_u32(double value)
+{
+    constexpr double most = std::numeric_limits<std::uint32_t>::max();
+    return static_cast<std::uint32_t>(std::llround(std::clamp(value, 0.0, most)));
+}
+
+/// Unit vector in Q1.30. A vector without direction becomes `otherwise` (unit).
+void store_normal(const Vector& normal, const Vector& otherwise, __s32 out[3])
+{
+    const double norm = length(normal);
+    const bool usable = norm > normal_length_min;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double component = usable ? normal[axis] / norm : otherwise[axis];
+        out[axis] = static_cast<__s32>(std::llround(component * PHANTOM_Q30_ONE));
+    }
+}
+
+/// Unit face normal; +z for a face without area (the servo refuses such a face and counts it).
+Vector face_normal(const Vector& a, const Vector& b, const Vector& c)
+{
+    const Vector n = cross({b[0] - a[0], b[1] - a[1], b[2] - a[2]}, {c[0] - a[0], c[1] - a[1], c[2] - a[2]});
+    const double norm = length(n);
+    if (!(norm > 0.0))
+        return {0.0, 0.0, 1.0};
+    return {n[0] / norm, n[1] / norm, n[2] / norm};
+}
+
+phantom_material material_of(const scene::Material& material)
+{
+    phantom_material out{};
+    out.stiffness_mn_mm = to_u32(material.stiffness_n_mm * 1e3);
+    out.radius_nm = std::max<std::uint32_t>(1, to_u32(material.radius_mm * nm_per_mm));
+    if (material.damping_ns_m) {
+        out.damping_mns_m = to_u32(*material.damping_ns_m * 1e3);
+        out.effects |= PHANTOM_EFFECT_DAMPING;
+    }
+    return out;
+}
+
+} // namespace
+
+SetBuilder::SetBuilder(const scene::Scene& scene)
+    : scene_(scene),
+      slot_(scene.triangles(), no_slot),
+      material_slot_(scene.materials.size(), no_slot),
+      object_slot_(scene.objects.size(), no_slot)
+{
+}
+
+void SetBuilder::begin(const std::array<double, 3>& centre_mm, device::PatchSet& out) const
+{
+    out.header = {};
+    for (int axis = 0; axis < 3; ++axis)
+        out.header.origin_nm[axis] = to_nm(centre_mm[axis]);
+    out.patches.clear();
+    out.materials.clear();
+    out.objects.clear();
+}
+
+bool SetBuilder::claim(std::uint32_t object, device::PatchSet& out)
+{
+    const std::uint32_t material = scene_.objects[object].material;
+    const bool new_material = material_slot_[material] == no_slot;
+    const bool new_object = object_slot_[object] == no_slot;
+    if ((new_material && out.materials.size() == PHANTOM_MATERIALS_MAX) ||
+        (new_object && out.objects.size() == PHANTOM_OBJECTS_MAX))
+        return false;
+    if (new_material) {
+        material_slot_[material] = static_cast<std::uint32_t>(out.materials.size());
+        out.materials.push_back(material_of(scene_.materials[material]));
+    }
+    if (new_object) {
+        object_slot_[object] = static_cast<std::uint32_t>(out.objects.size());
+        phantom_object entry{};
+        entry.object = object;
+        entry.rotation_q30[0] = PHANTOM_Q30_ONE;
+        out.objects.push_back(entry);
+    }
+    return true;
+}
+
+phantom_patch SetBuilder::patch(std::uint32_t object, std::uint32_t face,
+                                const std::array<std::int64_t, 3>& origin_nm) const
+{
+    const scene::Object& owner = scene_.objects[object];
+    const mesh::Triple& corners = owner.mesh.faces[face];
+    const mesh::Triple& normals = owner.mesh.face_normals[face];
+    std::array<Vector, 3> world;
+    for (int corner = 0; corner < 3; ++corner)
+        world[corner] = to_world(owner.pose, owner.mesh.vertices[corners[corner]]);
+    const Vector flat = face_normal(world[0], world[1], world[2]);
+
+    phantom_patch out{};
+    for (int corner = 0; corner < 3; ++corner) {
+        for (int axis = 0; axis < 3; ++axis)
+            out.vertex_nm[corner][axis] = static_cast<__s32>(to_nm(world[corner][axis]) - origin_nm[axis]);
+        store_normal(rotate(owner.pose, owner.mesh.normals[normals[corner]]), flat, out.normal_q30[corner]);
+        out.vertex[corner] = owner.first_vertex + corners[corner];
+    }
+    out.face = owner.first_face + face;
+    out.object = object_slot_[object];
+    out.material = material_slot_[owner.material];
+    out.kind = PHANTOM_PATCH_FACE;
+    return out;
+}
+
+void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out)
+{
+    const std::array<std::int64_t, 3> origin_nm = {out.header.origin_nm[0], out.header.origin_nm[1],
+                                                   out.header.origin_nm[2]};
+    out.patches.reserve(faces.size());
+    for (const auto& [object, face] : faces) {
+        const phantom_patch entry = patch(object, face, origin_nm);
+        slot_[entry.face] = static_cast<std::uint32_t>(out.patches.size());
+        out.patches.push_back(entry);
+    }
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const scene::Object& owner = scene_.objects[faces[i][0]];
+        const mesh::Triple& neighbours = owner.mesh.neighbours[faces[i][1]];
+        for (int edge = 0; edge < 3; ++edge) {
+            const std::uint32_t neighbour = neighbours[edge];
+            const std::uint32_t slot =
+                neighbour == mesh::no_neighbour ? no_slot : slot_[owner.first_face + neighbour];
+            out.patches[i].neighbour[edge] = slot == no_slot ? PHANTOM_PATCH_NONE : slot;
+        }
+    }
+    // Scratch is cleared entry by entry: a set is small, the scene may be large.
+    for (const phantom_patch& entry : out.patches)
+        slot_[entry.face] = no_slot;
+    for (const auto& [object, face] : faces) {
+        object_slot_[object] = no_slot;
+        material_slot_[scene_.objects[object].material] = no_slot;
+    }
+}
+
+void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
+                       double coverage_mm, device::PatchSet& out)
+{
+    begin(centre_mm, out);
+    faces_.clear();
+    for (const fdh::Hit& hit : hits)
+        faces_.push_back({hit.object, hit.triangle});
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (!claim(hits[i].object, out)) {
+            coverage_mm = std::min(coverage_mm, hits[i].distance);
+            faces_.resize(i);
+            break;
+        }
+    }
+    std::sort(faces_.begin(), faces_.end());
+    fill(faces_, out);
+    const double covered_nm = std::floor(coverage_mm * nm_per_mm) - rounding_nm;
+    out.header.radius_nm = to_u32(covered_nm);
+}
+
+void SetBuilder::build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out)
+{
+    begin(centre_mm, out);
+    faces_.clear();
+    bool complete = true;
+    for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
+        if (scene_.objects[object].mesh.faces.empty())
+            continue;
+        if (!claim(object, out)) {
+            complete = false;
+            break;
+        }
+        for (std::uint32_t face = 0; face < scene_.objects[object].mesh.faces.size(); ++face)
+            faces_.push_back({object, face});
+    }
+    fill(faces_, out);
+    out.header.radius_nm = complete ? std::numeric_limits<__u32>::max() : 0;
+}
+
+Status check_reach(const scene::Scene& scene, const FeederOptions& options)
+{
+    constexpr double reach_mm = PHANTOM_COORDINATE_MAX_NM / nm_per_mm;
+    const std::string file = scene.file.string();
+    if (options.all) {
+        const mesh::Bounds bounds = scene.bounds();
+        if (bounds.extent() > 2.0 * reach_mm)
+            return Error{
+                file,
+                fmt::format("the scene is {:.0f} mm long, a set with every triangle reaches {:.0f} mm",
+                            bounds.extent(), 2.0 * reach_mm),
+                "take a smaller budget than all, or --fit MM"};
+        if (scene.objects.size() > PHANTOM_OBJECTS_MAX || scene.materials.size() > PHANTOM_MATERIALS_MAX)
+            return Error{file,
+                         fmt::format("a set carries at most {} objects and {} materials", PHANTOM_OBJECTS_MAX,
+                                     PHANTOM_MATERIALS_MAX),
+                         "take a smaller budget than all"};
+        return success();
+    }
+    // The tip is at most search_radius from a triangle of its set, and the origin is the tip or between tip
+    // and proxy.
+    const double edge_max_mm = reach_mm - 2.0 * options.search_radius_mm;
+    for (const scene::Object& object : scene.objects) {
+        for (std::size_t face = 0; face < object.mesh.faces.size(); ++face) {
+            const mesh::Triple& corners = object.mesh.faces[face];
+            for (int edge = 0; edge < 3; ++edge) {
+                const Vector& a = object.mesh.vertices[corners[edge]];
+                const Vector& b = object.mesh.vertices[corners[(edge + 1) % 3]];
+                const double edge_mm = length({b[0] - a[0], b[1] - a[1], b[2] - a[2]});
+                if (edge_mm > edge_max_mm)
+                    return Error{
+                        fmt::format("{}: object {}, face {}", file, object.name, face),
+                        fmt::format("an edge is {:.0f} mm long, a set reaches {:.0f} mm from the tip",
+                                    edge_mm, edge_max_mm),
+                        "--split 500, or --unit or --fit if the mesh should be smaller"};
+            }
+        }
+    }
+    return success();
+}
+
+} // namespace phantom::feeder
