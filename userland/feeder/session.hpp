@@ -21,9 +21,13 @@ struct SessionOptions {
     FeederOptions feeder;
     bool force_usermode = false;          ///< do not look for the kernel's device
     std::optional<std::uint32_t> rate_hz; ///< else the scene's [servo] rate, else 1000
-    std::optional<phantom_model> model;   ///< else the scene's [servo], else projected/bounded/...
-    phantom_start start{};                ///< zero fields: the scene's [device], else the module's defaults
-    bool control_socket = true;           ///< let `fdhctl status|rate|model|stop` reach us
+    std::optional<phantom_model> model;   ///< else what `servo` and the scene's [servo] say
+    scene::ServoSettings servo{};         ///< word by word over the scene's [servo]
+    int cpu = -1;                         ///< user mode: pin the servo to that CPU
+    /// Where the simulated tip begins; else above the scene, out of reach of its surface.
+    std::optional<std::array<double, 3>> start_tip_mm{};
+    phantom_start start{};      ///< zero fields: the scene's [device], else the module's defaults
+    bool control_socket = true; ///< let `fdhctl status|rate|model|stop` reach us
     std::function<void(const std::string&)> say{}; ///< progress lines for a person, may be empty
 };
 
