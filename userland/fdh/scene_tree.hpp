@@ -16,6 +16,7 @@ struct Pose {
     Point translation{0, 0, 0};
 };
 
+/// Any number of threads may query at once; none may while add, set_pose or update runs.
 template <int K>
 class SceneTree {
   public:
@@ -25,6 +26,7 @@ class SceneTree {
     ~SceneTree();
 
     /// Adds an object; returns its number (0, 1, ...). Call update() before the next query.
+    /// Throws std::invalid_argument for a pose that is not finite; so does set_pose.
     std::uint32_t add(TriangleTree<K> tree, const Pose& pose);
     void set_pose(std::uint32_t object, const Pose& pose);
     /// Rebuilds level one from the poses. O(objects log objects).
@@ -36,7 +38,8 @@ class SceneTree {
     [[nodiscard]] std::size_t triangles() const;
     [[nodiscard]] std::size_t bytes() const;
 
-    /// As TriangleTree::nearest, over all objects; p in world coordinates.
+    /// As TriangleTree::nearest, over all objects; p in world coordinates. Of the accuracies of the
+    /// objects that are near, the worst counts.
     void nearest(const Point& p, std::size_t count, double max_radius, Nearest& out) const;
     void within(const Point& p, double radius, std::vector<Hit>& out) const;
 

@@ -6,22 +6,34 @@
 #include <memory>
 
 #include "fdh/hull.hpp"
+#include "fdh/isa.hpp"
 #include "fdh/query.hpp"
 
 namespace phantom::fdh {
 
+template <int K>
+class SceneTree;
+
 struct BuildOptions {
-    unsigned threads = 0; ///< 0: all cores
+    unsigned threads = 0; ///< 0: all cores. The tree is the same for any number.
+    Isa isa = Isa::best;  ///< for the queries; must be available (isa_available)
 };
 
 /// A hierarchy of FDH-K hulls over the triangles of one mesh. Immutable; any number of threads may
 /// query it at once. Distances hold for degenerate triangles too (a segment, a point).
+///
+/// Accuracy. The tree keeps vertices rounded to a grid of its own, fine against the mesh's extent (see
+/// accuracy()), and computes in double from there. Reported distances are off by no more than accuracy(p);
+/// coverage and the set of hits allow for that, so what they promise holds for the true mesh.
 template <int K>
 class TriangleTree {
   public:
     static_assert(K == 6 || K == 14 || K == 18 || K == 26, "FDH6, FDH14, FDH18 or FDH26");
 
     /// Builds by surface area heuristic (SAH). An empty view gives a tree that finds nothing.
+    /// Throws std::invalid_argument, naming the triangle, if one refers to a vertex that is not there or
+    /// whose coordinates are not finite or beyond largest_coordinate; if there are 2^31 triangles or more; or
+    /// if options.isa is not available. Vertices that no triangle uses are not looked at.
     static TriangleTree build(const MeshView& mesh, const BuildOptions& options = {});
 
     TriangleTree(TriangleTree&&) noexcept;
@@ -29,19 +41,31 @@ class TriangleTree {
     ~TriangleTree();
 
     /// The `count` nearest triangles within max_radius of p. `out` is reused: no allocation once warm.
+    /// A hit may be farther than max_radius by twice accuracy(p) at most. A point with a NaN or a coordinate
+    /// beyond largest_coordinate, or a radius that is negative or NaN, finds nothing and covers nothing.
     void nearest(const Point& p, std::size_t count, double max_radius, Nearest& out) const;
 
-    /// Every triangle within radius of p (distance <= radius), unsorted.
+    /// Every triangle within radius of p (distance <= radius), unsorted. Never misses one; may include some
+    /// that are farther, by twice accuracy(p) at most. Invalid input as for nearest().
     void within(const Point& p, double radius, std::vector<Hit>& out) const;
 
+    /// Largest difference between a reported distance from p and the true one [mesh unit]: about 1.04e-7 of
+    /// the mesh's half extent (the longest half side of its box, rounded up to a power of two), plus 1.5e-14
+    /// of p's distance from the mesh's centre.
+    [[nodiscard]] double accuracy(const Point& p) const;
+
     /// Low and high of the whole in each of the K/2 directions, unnormalised, in mesh coordinates
-    /// (rounded outward). Directions: see hull_directions<K>().
+    /// (rounded outward). Directions: see hull_directions<K>(). Of an empty tree: +infinity, -infinity.
     [[nodiscard]] std::array<std::array<double, 2>, K / 2> hull() const;
 
     [[nodiscard]] std::size_t triangles() const;
+    /// Memory the tree occupies.
     [[nodiscard]] std::size_t bytes() const;
+    /// The instruction set its queries run on.
+    [[nodiscard]] Isa isa() const;
 
   private:
+    friend class SceneTree<K>;
     struct Impl;
     explicit TriangleTree(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "fdh/build.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <string>
+
+#include "fdh/parallel.hpp"
+#include "fdh/split.hpp"
+
+namespace phantom::fdh {
+
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+bool usable(const Point& p)
+{
+    return std::abs(p[0]) <= largest_coordinate && std::abs(p[1]) <= largest_coordinate &&
+           std::abs(p[2]) <= largest_coordinate; // false for NaN
+}
+
+bool usable(const MeshView& mesh, const Triangle& triangle)
+{
+    return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t vertex) {
+        return vertex < mesh.vertices.size() && usable(mesh.vertices[vertex]);
+    });
+}
+
+[[noreturn]] void refuse(const MeshView& mesh, std::size_t index)
+{
+    const std::string where = "fdh: triangle " + std::to_string(index) + " ";
+    for (std::uint32_t vertex : mesh.triangles[index])
+        if (vertex >= mesh.vertices.size())
+            throw std::invalid_argument(where + "refers to vertex " + std::to_string(vertex) + " of " +
+                                        std::to_string(mesh.vertices.size()));
+    throw std::invalid_argument(where + "has a vertex that is not finite or too far away to compute with");
+}
+
+/// Box of the vertices that triangles use; throws at the first unusable triangle.
+std::array<Point, 2> bounds(const MeshView& mesh, unsigned threads)
+{
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    std::atomic<std::size_t> first_bad = mesh.triangles.size();
+    std::array<std::atomic<double>, 6> extremes;
+    for (auto& extreme : extremes)
+        extreme = inf;
+    auto lower = [](auto& shared, auto value) {
+        auto seen = shared.load();
+        while (value < seen && !shared.compare_exchange_weak(seen, value)) {
+        }
+    };
+    parallel_for(0, mesh.triangles.size(), threads, [&](std::size_t begin, std::size_t end) {
+        double local[6] = {inf, inf, inf, inf, inf, inf}; // lows, negated highs
+        for (std::size_t i = begin; i < end; i++) {
+            if (!usable(mesh, mesh.triangles[i])) {
+                lower(first_bad, i);
+                return;
+            }
+            for (std::uint32_t vertex : mesh.triangles[i])
+                for (int axis = 0; axis < 3; axis++) {
+                    local[axis] = std::min(local[axis], mesh.vertices[vertex][axis]);
+                    local[3 + axis] = std::min(local[3 + axis], -mesh.vertices[vertex][axis]);
+                }
+        }
+        for (int i = 0; i < 6; i++)
+            lower(extremes[i], local[i]);
+    });
+    if (first_bad < mesh.triangles.size())
+        refuse(mesh, first_bad);
+    return {Point{extremes[0], extremes[1], extremes[2]}, Point{-extremes[3], -extremes[4], -extremes[5]}};
+}
+
+std::vector<PrimitiveBox> boxes_of(const MeshView& mesh, const Grid& grid, unsigned threads)
+{
+    std::vector<PrimitiveBox> boxes(mesh.triangles.size());
+    parallel_for(0, boxes.size(), threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; i++) {
+            const auto& t = mesh.triangles[i];
+            const auto a = grid.round(mesh.vertices[t[0]]), b = grid.round(mesh.vertices[t[1]]),
+                       c = grid.round(mesh.vertices[t[2]]);
+            PrimitiveBox& box = boxes[i];
+            for (int axis = 0; axis < 3; axis++) {
+                box.low[axis] = std::min({a[axis], b[axis], c[axis]});
+                box.high[axis] = std::max({a[axis], b[axis], c[axis]});
+            }
+            box.index = static_cast<std::uint32_t>(i);
+            box.unused = 0;
+        }
+    });
+    return boxes;
+}
+
+void fill_leaf(Leaf& leaf, std::span<const PrimitiveBox> members, const MeshView& mesh, const Grid& grid)
+{
+    for (std::size_t lane = 0; lane < lanes; lane++) {
+        if (lane >= members.size()) {
+            for (int axis = 0; axis < 3; axis++) {
+                leaf.vertex[axis][lane] = std::numeric_limits<float>::quiet_NaN();
+                leaf.edge1[axis][lane] = leaf.edge2[axis][lane] = 0;
+            }
+            leaf.triangle[lane] = no_triangle;
+            continue;
+        }
+        const auto& t = mesh.triangles[members[lane].index];
+        const auto a = grid.round(mesh.vertices[t[0]]), b = grid.round(mesh.vertices[t[1]]),
+                   c = grid.round(mesh.vertices[t[2]]);
+        for (int axis = 0; axis < 3; axis++) {
+            leaf.vertex[axis][lane] = a[axis];
+            leaf.edge1[axis][lane] = b[axis] - a[axis];
+            leaf.edge2[axis][lane] = c[axis] - a[axis];
+        }
+        leaf.triangle[lane] = members[lane].index;
+    }
+}
+
+/// Hull of a leaf's triangles. Projections are whole numbers of up to 3 * 2^23 steps: exact in double.
+template <int K>
+Hull<K> hull_of(const Leaf& leaf)
+{
+    constexpr auto directions = hull_directions<K>();
+    Hull<K> hull;
+    for (int k = 0; k < K / 2; k++) {
+        const auto& d = directions[k];
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (int lane = 0; lane < lanes && leaf.triangle[lane] != no_triangle; lane++) {
+            auto dot = [&](const float(&v)[3][lanes]) {
+                return d[0] * double{v[0][lane]} + d[1] * double{v[1][lane]} + d[2] * double{v[2][lane]};
+            };
+            const double a = dot(leaf.vertex), u = dot(leaf.edge1), v = dot(leaf.edge2);
+            low = std::min(low, a + std::min({0.0, u, v}));
+            high = std::max(high, a + std::max({0.0, u, v}));
+        }
+        hull.low[k] = round_down(low);
+        hull.high[k] = round_up(high);
+    }
+    return hull;
+}
+
+} // namespace
+
+template <int K>
+Hull<K> Hull<K>::empty()
+{
+    Hull hull;
+    std::fill(std::begin(hull.low), std::end(hull.low), infinity);
+    std::fill(std::begin(hull.high), std::end(hull.high), -infinity);
+    return hull;
+}
+
+template <int K>
+void Hull<K>::grow(const Hull& other)
+{
+    for (int k = 0; k < K / 2; k++) {
+        low[k] = std::min(low[k], other.low[k]);
+        high[k] = std::max(high[k], other.high[k]);
+    }
+}
+
+template <int K>
+Hull<K> hull_of(const Node<K>& node)
+{
+    Hull<K> hull;
+    for (int k = 0; k < K / 2; k++) {
+        hull.low[k] = *std::min_element(node.low[k], node.low[k] + lanes);
+        hull.high[k] = *std::max_element(node.high[k], node.high[k] + lanes);
+    }
+    return hull;
+}
+
+template <int K>
+void set_child(Node<K>& node, int lane, const Hull<K>& hull, std::uint32_t child)
+{
+    for (int k = 0; k < K / 2; k++) {
+        node.low[k][lane] = hull.low[k];
+        node.high[k][lane] = hull.high[k];
+    }
+    node.child[lane] = child;
+}
+
+template <int K>
+Node<K> empty_node()
+{
+    Node<K> node;
+    for (int lane = 0; lane < lanes; lane++)
+        set_child(node, lane, Hull<K>::empty(), 0);
+    return node;
+}
+
+template <int K>
+TreeData<K> build_tree(const MeshView& mesh, unsigned threads)
+{
+    if (mesh.triangles.size() >= leaf_flag)
+        throw std::invalid_argument("fdh: " + std::to_string(mesh.triangles.size()) +
+                                    " triangles in one tree; it holds 2147483647");
+    TreeData<K> data;
+    data.triangles = mesh.triangles.size();
+    if (mesh.triangles.empty())
+        return data;
+    const auto [low, high] = bounds(mesh, threads);
+    data.grid = Grid::over(low, high);
+    auto boxes = boxes_of(mesh, data.grid, threads);
+    const Shape shape = split(boxes, lanes, threads);
+
+    data.nodes.resize(shape.nodes.size());
+    data.leaves.resize(shape.leaves);
+    parallel_for(0, shape.nodes.size(), threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; n++) {
+            data.nodes[n] = empty_node<K>();
+            for (int i = 0; i < shape.nodes[n].count; i++) {
+                const auto& child = shape.nodes[n].children[i];
+                Hull<K> hull = Hull<K>::empty();
+                if (child.reference & leaf_flag) {
+                    Leaf& leaf = data.leaves[child.reference & ~leaf_flag];
+                    fill_leaf(leaf, std::span(boxes).subspan(child.begin, child.end - child.begin), mesh,
+                              data.grid);
+                    hull = hull_of<K>(leaf);
+                }
+                set_child(data.nodes[n], i, hull, child.reference);
+            }
+        }
+    });
+    // Children stand behind their parents: from the back, each is complete when its parent asks.
+    for (std::size_t n = shape.nodes.size(); n-- > 0;)
+        for (int i = 0; i < shape.nodes[n].count; i++)
+            if (const auto reference = shape.nodes[n].children[i].reference; !(reference & leaf_flag))
+                set_child(data.nodes[n], i, hull_of(data.nodes[reference]), reference);
+    return data;
+}
+
+#define PHANTOM_FDH_BUILD(K)                                                                                 \
+    template struct Hull<K>;                                                                                 \
+    template Hull<K> hull_of<K>(const Node<K>&);                                                             \
+    template void set_child<K>(Node<K>&, int, const Hull<K>&, std::uint32_t);                                \
+    template Node<K> empty_node<K>();                                                                        \
+    template TreeData<K> build_tree<K>(const MeshView&, unsigned);
+PHANTOM_FDH_BUILD(6)
+PHANTOM_FDH_BUILD(14)
+PHANTOM_FDH_BUILD(18)
+PHANTOM_FDH_BUILD(26)
+
+} // namespace phantom::fdh

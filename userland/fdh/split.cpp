@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "fdh/split.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "fdh/parallel.hpp"
+
+namespace phantom::fdh {
+
+namespace {
+
+typedef float Float4 __attribute__((vector_size(16)));
+typedef std::int32_t Int4 __attribute__((vector_size(16)));
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+Float4 min(Float4 a, Float4 b)
+{
+    return a < b ? a : b;
+}
+Float4 max(Float4 a, Float4 b)
+{
+    return a > b ? a : b;
+}
+/// Three coordinates and a zero, for what stands there is no number.
+Float4 load(const void* address)
+{
+    constexpr Int4 coordinates = {-1, -1, -1, 0};
+    Int4 v;
+    __builtin_memcpy(&v, address, sizeof v);
+    return Float4(v & coordinates);
+}
+Float4 low_of(const PrimitiveBox& box)
+{
+    return load(&box);
+}
+Float4 high_of(const PrimitiveBox& box)
+{
+    return load(reinterpret_cast<const char*>(&box) + offsetof(PrimitiveBox, high));
+}
+
+struct Box {
+    Float4 low = {infinity, infinity, infinity, infinity};
+    Float4 high = {-infinity, -infinity, -infinity, -infinity};
+
+    void grow(Float4 l, Float4 h)
+    {
+        low = min(low, l);
+        high = max(high, h);
+    }
+    /// Half the surface.
+    [[nodiscard]] float area() const
+    {
+        const Float4 e = high - low;
+        return e[0] * (e[1] + e[2]) + e[1] * e[2];
+    }
+};
+
+/// Twice the centre: the factor cancels.
+Float4 centre(const PrimitiveBox& box)
+{
+    return low_of(box) + high_of(box);
+}
+
+/// An inner node of the binary tree, stored at the index where its range is split: no two nodes share it, so
+/// threads write without a lock and the result does not depend on them. 0 stands for a leaf.
+struct BinaryNode {
+    std::uint32_t left, right; ///< where the children are split
+    float area;                ///< half the surface of its box
+};
+
+class Splitter {
+  public:
+    Splitter(std::span<PrimitiveBox> boxes, unsigned leaf_size)
+        : boxes_(boxes), leaf_size_(leaf_size), nodes_(boxes.size())
+    {
+    }
+
+    /// Where [begin, end) is split; 0 if it is a leaf.
+    std::uint32_t divide(std::uint32_t begin, std::uint32_t end, int depth, unsigned threads)
+    {
+        const std::uint32_t count = end - begin;
+        if (count <= leaf_size_)
+            return 0;
+        Box box, centres;
+        for (std::uint32_t i = begin; i < end; i++) {
+            box.grow(low_of(boxes_[i]), high_of(boxes_[i]));
+            const Float4 c = centre(boxes_[i]);
+            centres.grow(c, c);
+        }
+        std::uint32_t middle = depth < balanced_depth ? partition(begin, end, centres) : 0;
+        if (middle == 0)
+            middle = halve(begin, end, centres);
+        BinaryNode& node = nodes_[middle];
+        node.area = box.area();
+        auto left = [&, this] { node.left = divide(begin, middle, depth + 1, threads / 2); };
+        auto right = [&, this] { node.right = divide(middle, end, depth + 1, threads - threads / 2); };
+        constexpr std::uint32_t worth_a_thread = 8192;
+        if (threads > 1 && count > worth_a_thread) {
+            fork_join(left, right);
+        } else {
+            left();
+            right();
+        }
+        return middle;
+    }
+
+    Shape collapse(std::uint32_t root)
+    {
+        Shape shape;
+        shape.nodes.reserve(boxes_.size() / (3 * leaf_size_) + 1);
+        emit(shape, {0, static_cast<std::uint32_t>(boxes_.size()), root});
+        return shape;
+    }
+
+  private:
+    static constexpr int most_bins = 16;
+
+    struct Bins {
+        Box box[3][most_bins];
+        std::uint32_t count[3][most_bins] = {};
+    };
+    struct Range {
+        std::uint32_t begin, end, split;
+    };
+    struct Cut {
+        float cost = infinity;
+        int axis = -1, bin = 0; ///< bins up to and including `bin` go left
+    };
+
+    /// Leaves a range of this size fills, as a cost: full leaves are cheap.
+    [[nodiscard]] float leaves(std::uint32_t count) const
+    {
+        return static_cast<float>((count + leaf_size_ - 1) / leaf_size_);
+    }
+
+    void fill(Bins& bins, std::uint32_t begin, std::uint32_t end, Float4 origin, Float4 scale, int last) const
+    {
+        const Int4 top = {last, last, last, 0};
+        for (std::uint32_t i = begin; i < end; i++) {
+            const Float4 low = low_of(boxes_[i]), high = high_of(boxes_[i]);
+            Int4 bin = __builtin_convertvector((low + high - origin) * scale, Int4);
+            bin = bin < top ? bin : top;
+            for (int axis = 0; axis < 3; axis++) {
+                bins.box[axis][bin[axis]].grow(low, high);
+                bins.count[axis][bin[axis]]++;
+            }
+        }
+    }
+
+    /// The cheapest cut along one axis: sweeps from the right for the costs there, then from the left.
+    void sweep(const Bins& bins, int axis, int last, Cut& best) const
+    {
+        float right_cost[most_bins];
+        Box box;
+        std::uint32_t count = 0;
+        for (int b = last; b > 0; b--) {
+            box.grow(bins.box[axis][b].low, bins.box[axis][b].high);
+            count += bins.count[axis][b];
+            right_cost[b] = count ? box.area() * leaves(count) : infinity;
+        }
+        box = {};
+        count = 0;
+        for (int b = 0; b < last; b++) {
+            box.grow(bins.box[axis][b].low, bins.box[axis][b].high);
+            count += bins.count[axis][b];
+            const float cost = count ? box.area() * leaves(count) + right_cost[b + 1] : infinity;
+            if (cost < best.cost)
+                best = {cost, axis, b};
+        }
+    }
+
+    /// Splits by the heuristic; 0 if it knows no split (all centres in one place).
+    std::uint32_t partition(std::uint32_t begin, std::uint32_t end, const Box& centres)
+    {
+        const std::uint32_t count = end - begin;
+        const int bin_count = count > 256 ? most_bins : 8;
+        const Float4 extent = centres.high - centres.low;
+        Float4 scale{};
+        for (int axis = 0; axis < 3; axis++)
+            if (extent[axis] > 0)
+                scale[axis] = static_cast<float>(bin_count) / extent[axis];
+        const Float4 origin = centres.low;
+        Bins bins;
+        fill(bins, begin, end, origin, scale, bin_count - 1);
+        Cut best;
+        for (int axis = 0; axis < 3; axis++)
+            if (extent[axis] > 0)
+                sweep(bins, axis, bin_count - 1, best);
+        if (best.axis < 0)
+            return 0;
+        const int axis = best.axis;
+        const auto middle =
+            std::partition(boxes_.begin() + begin, boxes_.begin() + end, [&](const PrimitiveBox& b) {
+                const float place = (b.low[axis] + b.high[axis] - origin[axis]) * scale[axis];
+                return std::min(static_cast<int>(place), bin_count - 1) <= best.bin;
+            });
+        return static_cast<std::uint32_t>(middle - boxes_.begin());
+    }
+
+    /// Splits by count, along the widest axis of the centres, at a whole number of leaves.
+    std::uint32_t halve(std::uint32_t begin, std::uint32_t end, const Box& centres)
+    {
+        const Float4 extent = centres.high - centres.low;
+        int axis = extent[1] > extent[0] ? 1 : 0;
+        axis = extent[2] > extent[axis] ? 2 : axis;
+        const std::uint32_t half = (end - begin) / 2;
+        const std::uint32_t middle = begin + (half + leaf_size_ - 1) / leaf_size_ * leaf_size_;
+        std::nth_element(boxes_.begin() + begin, boxes_.begin() + middle, boxes_.begin() + end,
+                         [axis](const PrimitiveBox& a, const PrimitiveBox& b) {
+                             const float x = a.low[axis] + a.high[axis], y = b.low[axis] + b.high[axis];
+                             return x != y ? x < y : a.index < b.index;
+                         });
+        return middle;
+    }
+
+    /// Writes the node for a range, then those below it. Returns its index.
+    std::uint32_t emit(Shape& shape, Range range)
+    {
+        Range children[lanes] = {range};
+        int count = 1;
+        while (count < lanes) {
+            int largest = -1;
+            for (int i = 0; i < count; i++) {
+                const bool inner = children[i].split != 0;
+                if (inner &&
+                    (largest < 0 || nodes_[children[i].split].area > nodes_[children[largest].split].area))
+                    largest = i;
+            }
+            if (largest < 0)
+                break;
+            const Range parent = children[largest];
+            const BinaryNode& node = nodes_[parent.split];
+            std::copy_backward(children + largest + 1, children + count, children + count + 1);
+            children[largest] = {parent.begin, parent.split, node.left};
+            children[largest + 1] = {parent.split, parent.end, node.right};
+            count++;
+        }
+        const auto index = static_cast<std::uint32_t>(shape.nodes.size());
+        shape.nodes.emplace_back().count = count;
+        for (int i = 0; i < count; i++) {
+            const bool leaf = children[i].split == 0;
+            const std::uint32_t reference = leaf ? shape.leaves++ | leaf_flag : emit(shape, children[i]);
+            shape.nodes[index].children[i] = {children[i].begin, children[i].end, reference};
+        }
+        return index;
+    }
+
+    std::span<PrimitiveBox> boxes_;
+    std::uint32_t leaf_size_;
+    std::vector<BinaryNode> nodes_;
+};
+
+} // namespace
+
+Shape split(std::span<PrimitiveBox> boxes, unsigned leaf_size, unsigned threads)
+{
+    if (boxes.empty())
+        return {};
+    Splitter splitter(boxes, leaf_size);
+    const std::uint32_t root = splitter.divide(0, static_cast<std::uint32_t>(boxes.size()), 0, threads);
+    return splitter.collapse(root);
+}
+
+} // namespace phantom::fdh
