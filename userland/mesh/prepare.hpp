@@ -29,17 +29,20 @@ struct Report {
     std::uint64_t vertices_welded = 0;
     std::uint64_t faces_zero_area = 0; ///< dropped: two corners equal or collinear
     std::uint64_t faces_duplicate = 0; ///< dropped: same three vertices, same sense
-    std::uint64_t faces_flipped = 0;   ///< turned so that neighbours agree
+    std::uint64_t faces_nonfinite =
+        0;                           ///< dropped: a corner is not a finite point (no file that read() takes)
+    std::uint64_t faces_flipped = 0; ///< turned so that neighbours agree
     std::uint64_t components = 0;
-    std::uint64_t components_turned = 0; ///< closed and inside out: turned outward
-    std::uint64_t nonmanifold_edges = 0; ///< shared by more than two faces
-    std::uint64_t boundary_edges = 0;    ///< with one face
+    std::uint64_t components_turned = 0;  ///< closed and inside out: turned outward
+    std::uint64_t nonmanifold_edges = 0;  ///< shared by more than two faces
+    std::uint64_t boundary_edges = 0;     ///< with one face
+    std::uint64_t unorientable_edges = 0; ///< two faces that cannot agree on a side (a Moebius strip)
     std::uint64_t crease_edges = 0;
-    std::uint64_t normals_repaired = 0;    ///< vertex normals that cancelled to zero or did not fit
+    std::uint64_t normals_repaired = 0;    ///< corner normals that cancelled to zero or did not fit
     std::uint64_t faces_split = 0;         ///< faces added by bisection
     std::uint64_t vertices = 0, faces = 0; ///< of the result
     double edge_min_mm = 0, edge_median_mm = 0, edge_max_mm = 0;
-    bool watertight = false; ///< every edge has exactly two faces
+    bool watertight = false; ///< every edge has exactly two faces, of opposite sense
     double size_mm[3] = {0, 0, 0};
     std::vector<std::string> warnings; ///< each names the option that helps
 };

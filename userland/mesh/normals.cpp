@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Vertex normals weighted by the faces' angles at the vertex (Thuermer and Wuethrich 1998, "Computing
+// Vertex Normals from Polygonal Facets"): independent of how a flat part is cut into triangles.
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "mesh/steps.hpp"
+#include "mesh/vector.hpp"
+
+namespace phantom::mesh {
+
+namespace {
+
+/// A sum of unit normals shorter than this part of their summed weights has cancelled: what is left is
+/// rounding, and the corner takes its face's own normal.
+constexpr double cancelled = 1e-6;
+
+std::vector<Vec3> face_normals_of(const Soup& soup)
+{
+    std::vector<Vec3> normals(soup.faces.size());
+    for (std::size_t f = 0; f < normals.size(); ++f)
+        normals[f] = face_normal(soup, soup.faces[f]);
+    return normals;
+}
+
+/// Inner angle at a corner, radians.
+double corner_angle(const Soup& soup, const Triple& face, std::size_t corner)
+{
+    const Vec3& at = soup.vertices[face[corner]];
+    return angle_between(subtract(soup.vertices[face[(corner + 1) % 3]], at),
+                         subtract(soup.vertices[face[(corner + 2) % 3]], at));
+}
+
+/// Sets of corners (3 f + i), joined.
+class CornerGroups {
+  public:
+    explicit CornerGroups(std::size_t corners) : parent_(corners)
+    {
+        std::iota(parent_.begin(), parent_.end(), 0U);
+    }
+    /// The smallest corner of the group.
+    std::uint32_t first(std::uint32_t corner)
+    {
+        while (parent_[corner] != corner)
+            corner = parent_[corner] = parent_[parent_[corner]];
+        return corner;
+    }
+    void join(std::uint32_t a, std::uint32_t b)
+    {
+        a = first(a);
+        b = first(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+  private:
+    std::vector<std::uint32_t> parent_;
+};
+
+std::uint32_t corner_of(const Triple& face, std::uint32_t vertex)
+{
+    return face[0] == vertex ? 0 : face[1] == vertex ? 1 : 2;
+}
+
+/// Joins the corners on either end of every edge that is no crease.
+CornerGroups group_corners(const Soup& soup, const std::vector<Triple>& neighbours,
+                           const std::vector<Vec3>& face_normals, double crease_deg, Report& report)
+{
+    CornerGroups groups(3 * soup.faces.size());
+    const double crease = crease_deg * std::numbers::pi / 180.0;
+    for (std::uint32_t f = 0; f < soup.faces.size(); ++f) {
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            const std::uint32_t other = neighbours[f][i];
+            if (other == no_neighbour || other < f)
+                continue; // each edge once, from its lower face
+            if (angle_between(face_normals[f], face_normals[other]) > crease) {
+                ++report.crease_edges;
+                continue;
+            }
+            for (const std::uint32_t corner : {i, (i + 1) % 3}) {
+                const std::uint32_t vertex = soup.faces[f][corner];
+                groups.join(3 * f + corner, 3 * other + corner_of(soup.faces[other], vertex));
+            }
+        }
+    }
+    return groups;
+}
+
+/// Normals of one group of corners, weighted by angle.
+struct Sum {
+    Vec3 normal{0, 0, 0};
+    double weight = 0;
+};
+
+} // namespace
+
+void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double crease_deg, Report& report)
+{
+    const std::vector<Vec3> faces = face_normals_of(soup);
+    CornerGroups groups = group_corners(soup, neighbours, faces, crease_deg, report);
+    std::vector<Sum> sums(3 * soup.faces.size());
+    for (std::uint32_t f = 0; f < faces.size(); ++f) {
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            Sum& sum = sums[groups.first(3 * f + i)];
+            const double angle = corner_angle(soup, soup.faces[f], i);
+            sum.normal = add(sum.normal, scaled(faces[f], angle));
+            sum.weight += angle;
+        }
+    }
+
+    const bool from_file = !soup.face_normals.empty();
+    std::vector<Vec3> normals;
+    std::vector<Triple> face_normals(faces.size());
+    std::vector<std::uint32_t> file_number(soup.normals.size(), no_neighbour);
+    std::vector<std::uint32_t> group_number(sums.size(), no_neighbour);
+    const auto numbered = [&normals](std::uint32_t& number, const Vec3& normal) {
+        if (number == no_neighbour) {
+            number = static_cast<std::uint32_t>(normals.size());
+            normals.push_back(normal);
+        }
+        return number;
+    };
+    for (std::uint32_t f = 0; f < faces.size(); ++f) {
+        std::uint32_t own_number = no_neighbour;
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            if (from_file) {
+                const std::uint32_t given = soup.face_normals[f][i];
+                // True only for a direction on the outer side: zero and NaN fail as well.
+                if (dot(soup.normals[given], faces[f]) > 0) {
+                    face_normals[f][i] = numbered(file_number[given], soup.normals[given]);
+                    continue;
+                }
+                ++report.normals_repaired;
+            }
+            const std::uint32_t group = groups.first(3 * f + i);
+            const Sum& sum = sums[group];
+            const Vec3 normal =
+                length(sum.normal) > cancelled * sum.weight ? normalized(sum.normal) : Vec3{0, 0, 0};
+            if (dot(normal, faces[f]) > 0) {
+                face_normals[f][i] = numbered(group_number[group], normal);
+                continue;
+            }
+            report.normals_repaired += !from_file;
+            face_normals[f][i] = numbered(own_number, faces[f]);
+        }
+    }
+    soup.normals = std::move(normals);
+    soup.face_normals = std::move(face_normals);
+}
+
+void vertex_normals(Soup& soup)
+{
+    soup.normals.assign(soup.vertices.size(), Vec3{0, 0, 0});
+    for (const Triple& face : soup.faces) {
+        const Vec3 normal = face_normal(soup, face);
+        for (std::size_t i = 0; i < 3; ++i)
+            soup.normals[face[i]] = add(soup.normals[face[i]], scaled(normal, corner_angle(soup, face, i)));
+    }
+    for (Vec3& normal : soup.normals)
+        normal = normalized(normal);
+    soup.face_normals = soup.faces;
+}
+
+} // namespace phantom::mesh

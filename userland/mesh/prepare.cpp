@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "mesh/prepare.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "mesh/steps.hpp"
+#include "mesh/vector.hpp"
+
+namespace phantom::mesh {
+
+namespace {
+
+Status check_options(const PrepareOptions& options)
+{
+    const auto bad = [](const char* what, double value, const char* expected) {
+        return Error{"", fmt::format("{} is {}, expected {}", what, value, expected)};
+    };
+    // Negated comparisons: NaN is refused as well.
+    if (!(options.scale > 0) || !std::isfinite(options.scale))
+        return bad("scale", options.scale, "a number above 0");
+    if (!(options.fit_mm >= 0) || !std::isfinite(options.fit_mm))
+        return bad("fit", options.fit_mm, "a size in mm above 0, or 0 for none");
+    if (!(options.weld_mm >= 0) || !std::isfinite(options.weld_mm))
+        return bad("weld", options.weld_mm, "a distance in mm of 0 or more");
+    if (!(options.split_mm >= 0) || !std::isfinite(options.split_mm))
+        return bad("split", options.split_mm, "a length in mm above 0, or 0 for none");
+    if (!(options.crease_deg >= 0 && options.crease_deg <= 180))
+        return bad("crease", options.crease_deg, "an angle of 0 ... 180 degrees");
+    return success();
+}
+
+/// Indices a caller made itself could be wrong; read() never gives such.
+bool indices_in_range(const Soup& soup)
+{
+    const auto within = [](const std::vector<Triple>& triples, std::size_t count) {
+        return std::all_of(triples.begin(), triples.end(), [count](const Triple& t) {
+            return std::max({t[0], t[1], t[2]}) < count;
+        });
+    };
+    return within(soup.faces, soup.vertices.size()) && within(soup.face_normals, soup.normals.size()) &&
+           (soup.face_normals.empty() || soup.face_normals.size() == soup.faces.size());
+}
+
+/// Bounds of what the faces use: a stray vertex far away does not count.
+Bounds used_bounds(const Soup& soup)
+{
+    std::vector<Vec3> used;
+    used.reserve(soup.vertices.size());
+    std::vector<bool> seen(soup.vertices.size(), false);
+    for (const Triple& face : soup.faces) {
+        for (const std::uint32_t v : face) {
+            if (!seen[v] && is_finite(soup.vertices[v]))
+                used.push_back(soup.vertices[v]);
+            seen[v] = true;
+        }
+    }
+    return bounds_of(used);
+}
+
+/// File units to mm, then the fit.
+Status to_millimetres(Soup& soup, const PrepareOptions& options, const std::string& name)
+{
+    if (options.scale != 1.0) {
+        for (Vec3& vertex : soup.vertices)
+            vertex = scaled(vertex, options.scale);
+    }
+    if (options.fit_mm <= 0)
+        return success();
+    const Bounds bounds = used_bounds(soup);
+    if (!(bounds.extent() > 0))
+        return Error{name, "has no extent, so it cannot be fitted to a size", "leave out --fit"};
+    const double factor = options.fit_mm / bounds.extent();
+    const Vec3 centre = scaled(add(bounds.low, bounds.high), 0.5);
+    // Already fitted: leave every bit as it is.
+    if (std::abs(factor - 1.0) < 1e-14 && length(centre) < 1e-12 * options.fit_mm)
+        return success();
+    for (Vec3& vertex : soup.vertices)
+        vertex = scaled(subtract(vertex, centre), factor);
+    return success();
+}
+
+/// Turning faces can make two of them equal, and dropping one can give an edge its two faces: until
+/// nothing changes. Each further round has fewer faces, so it ends.
+void agree_on_sense(Soup& soup, Report& report)
+{
+    drop_duplicates(soup, report);
+    while (orient(soup, report) > 0 && drop_duplicates(soup, report) > 0) {
+    }
+}
+
+} // namespace
+
+Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::string& name)
+{
+    if (const auto status = check_options(options); !status)
+        return status.error();
+    if (!indices_in_range(soup))
+        return Error{name, "has an index out of range"};
+    const auto progress = [&options](double part) {
+        if (options.progress)
+            options.progress(part);
+    };
+    Report report;
+    report.vertices_read = soup.vertices.size();
+    report.faces_read = soup.faces.size();
+    progress(0);
+    if (const auto status = to_millimetres(soup, options, name); !status)
+        return status.error();
+
+    if (options.full) {
+        drop_degenerate(soup, report);
+        weld(soup, options.weld_mm, report);
+        drop_degenerate(soup, report);
+        progress(0.3);
+        agree_on_sense(soup, report);
+        progress(0.6);
+        if (options.split_mm > 0) {
+            if (const auto status = split_long_edges(soup, options.split_mm, name, report); !status)
+                return status.error();
+        }
+    }
+    if (soup.faces.empty())
+        return Error{name, fmt::format("has no usable face: {} without area, {} not finite, of {}",
+                                       report.faces_zero_area, report.faces_nonfinite, report.faces_read)};
+    Mesh mesh;
+    mesh.neighbours = neighbours_of(soup, report);
+    progress(0.8);
+    if (options.full)
+        corner_normals(soup, mesh.neighbours, options.crease_deg, report);
+    else if (soup.face_normals.empty())
+        vertex_normals(soup);
+    mesh.vertices = std::move(soup.vertices);
+    mesh.faces = std::move(soup.faces);
+    mesh.normals = std::move(soup.normals);
+    mesh.face_normals = std::move(soup.face_normals);
+    finish_report(mesh, report);
+    progress(1);
+    return Prepared{std::move(mesh), std::move(report)};
+}
+
+} // namespace phantom::mesh

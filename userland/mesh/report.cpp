@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "mesh/edge_index.hpp"
+#include "mesh/steps.hpp"
+#include "mesh/vector.hpp"
+
+namespace phantom::mesh {
+
+namespace {
+
+void measure_edges(const Mesh& mesh, Report& report)
+{
+    std::vector<double> sizes;
+    sizes.reserve(3 * mesh.faces.size() / 2);
+    for_each_edge(mesh.faces, mesh.vertices.size(),
+                  [&](std::uint32_t low, std::uint32_t high, std::span<const HalfEdge>) {
+                      sizes.push_back(distance(mesh.vertices[low], mesh.vertices[high]));
+                  });
+    if (sizes.empty())
+        return;
+    const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+    report.edge_min_mm = *least;
+    report.edge_max_mm = *most;
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    report.edge_median_mm = *middle;
+}
+
+/// The hand works in a space of some decimetres: anything else is most likely another unit.
+void warn_size(double extent_mm, Report& report)
+{
+    if (extent_mm < 10.0)
+        report.warnings.push_back(
+            fmt::format("only {:.3g} mm across: another unit? (--unit m, or --fit 100)", extent_mm));
+    else if (extent_mm > 1000.0)
+        report.warnings.push_back(
+            fmt::format("{:.3g} m across: another unit? (--unit um, or --fit 100)", extent_mm / 1000.0));
+}
+
+void warn_defects(Report& report)
+{
+    const auto warn = [&report](std::uint64_t count, const char* what) {
+        if (count > 0)
+            report.warnings.push_back(fmt::format("{} {}", count, what));
+    };
+    warn(report.boundary_edges,
+         "boundary edges: the mesh is open, a tip can get behind it (--weld MM closes seams of that width)");
+    warn(report.nonmanifold_edges, "non-manifold edges (more than two faces): no proxy slides across them "
+                                   "(--weld 0 if welding made them)");
+    warn(report.unorientable_edges,
+         "edges whose two faces disagree on the outside: no proxy slides across them "
+         "(--prepare none keeps the file's own sense)");
+    warn(report.faces_zero_area, "faces without area dropped (--prepare none keeps them)");
+    warn(report.faces_duplicate, "duplicate faces dropped (--prepare none keeps them)");
+    warn(report.faces_nonfinite, "faces with a corner that is no finite point dropped");
+}
+
+} // namespace
+
+void finish_report(const Mesh& mesh, Report& report)
+{
+    report.vertices = mesh.vertices.size();
+    report.faces = mesh.faces.size();
+    measure_edges(mesh, report);
+    const Bounds bounds = bounds_of(mesh.vertices);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        report.size_mm[axis] = bounds.high[axis] - bounds.low[axis];
+    warn_size(bounds.extent(), report);
+    warn_defects(report);
+}
+
+} // namespace phantom::mesh

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The steps of prepare(), in their order. Each works on a soup in mm in place and counts into the report.
+//
+// Plain arrays and one edge index, not a half-edge mesh: OpenMesh passes coordinates through float and drops
+// faces that would make it non-manifold, and here every face must be kept or counted.
+#pragma once
+
+#include "mesh/mesh.hpp"
+#include "mesh/prepare.hpp"
+
+namespace phantom::mesh {
+
+/// Vertices no farther apart than weld_mm become the first of them; 0: only equal ones. Vertices that no
+/// face uses go. Representatives are pairwise farther apart than weld_mm, so a second run changes nothing.
+void weld(Soup& soup, double weld_mm, Report& report);
+
+/// Drops faces with a corner that is not finite, and faces without area: two corners equal, or the height
+/// over the longest side below 1e-12 of it (rounding of the coordinates themselves).
+void drop_degenerate(Soup& soup, Report& report);
+
+/// Drops faces with the same three corners in the same sense as an earlier one; returns how many.
+std::uint64_t drop_duplicates(Soup& soup, Report& report);
+
+/// Turns faces so that neighbours agree (the fewer of a component are turned), then every closed component
+/// whose signed volume is negative. Returns how many faces were turned in all.
+std::uint64_t orient(Soup& soup, Report& report);
+
+/// Bisects edges longer than split_mm, longest first, in every face that has them (no T-junctions).
+/// Fails when that would give more than 20 million faces. Children take their parent's place in the order.
+Status split_long_edges(Soup& soup, double split_mm, const std::string& name, Report& report);
+
+/// Faces over each edge; none across an edge of more than two faces or of two that disagree. Counts edges.
+std::vector<Triple> neighbours_of(const Soup& soup, Report& report);
+
+/// Angle-weighted normals per corner, faces round a vertex grouped up to creases; a normal of the
+/// file stays where it fits its face.
+void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double crease_deg, Report& report);
+
+/// Normals of `--prepare none`: angle-weighted over all faces with the same vertex number, no crease.
+void vertex_normals(Soup& soup);
+
+/// Unit normal by the corners' order; zero for a face without area.
+Vec3 face_normal(const Soup& soup, const Triple& face);
+
+/// Sizes, edge lengths, and the warnings that name an option.
+void finish_report(const Mesh& mesh, Report& report);
+
+} // namespace phantom::mesh

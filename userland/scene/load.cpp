@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "mesh/read.hpp"
+#include "scene/ranges.hpp"
+#include "scene/scene.hpp"
+#include "scene/scene_file.hpp"
+#include "scene/shapes.hpp"
+#include "scene/units.hpp"
+
+namespace phantom::scene {
+
+namespace {
+
+bool is_scene_file(const std::filesystem::path& file)
+{
+    return file.extension() == ".toml" || file.extension() == ".TOML";
+}
+
+Status check_options(const LoadOptions& options)
+{
+    const auto refuse = [](const char* option, double value, const char* expected) {
+        return Error{option, fmt::format("{:g} is out of range, expected {}", value, expected)};
+    };
+    if (options.unit && !millimetres_in(*options.unit))
+        return Error{"--unit", fmt::format("\"{}\" is no unit, expected {}", *options.unit, unit_names)};
+    if (options.stiffness_n_mm && !range::stiffness_n_mm.contains(*options.stiffness_n_mm))
+        return refuse("--stiffness", *options.stiffness_n_mm, range::stiffness_n_mm.text);
+    if (options.radius_mm && !range::radius_mm.contains(*options.radius_mm))
+        return refuse("--radius", *options.radius_mm, range::radius_mm.text);
+    return success();
+}
+
+/// A scene of one object round a mesh file.
+SceneFile file_round(const std::filesystem::path& mesh)
+{
+    SceneFile scene;
+    ObjectEntry object;
+    object.name = mesh.stem().string();
+    object.mesh = mesh;
+    scene.objects.push_back(std::move(object));
+    scene.materials.emplace_back();
+    return scene;
+}
+
+/// The scene's unit and fit, unless the options name their own.
+mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& object,
+                                     const LoadOptions& options)
+{
+    mesh::PrepareOptions prepare = options.prepare;
+    const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or("mm")));
+    // A shape's sizes are in mm already.
+    prepare.scale *= object.shape == Shape::none ? millimetres_in(unit).value_or(1.0) : 1.0;
+    if (prepare.fit_mm <= 0 && object.fit_mm)
+        prepare.fit_mm = *object.fit_mm;
+    return prepare;
+}
+
+Result<mesh::Soup> geometry_of(const ObjectEntry& object)
+{
+    if (object.shape == Shape::sphere)
+        return sphere_soup(object.sphere_radius_mm);
+    if (object.shape == Shape::box)
+        return box_soup(object.box_size_mm);
+    auto soup = mesh::read(object.mesh);
+    if (!soup && !object.mesh_where.empty() && !std::filesystem::exists(object.mesh))
+        return Error{object.mesh_where, "mesh: no such file: " + object.mesh.string()};
+    return soup;
+}
+
+Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const LoadOptions& options)
+{
+    auto soup = geometry_of(entry);
+    if (!soup)
+        return soup.error();
+    const std::string name = entry.mesh.empty() ? entry.name : entry.mesh.string();
+    auto prepared = mesh::prepare(std::move(*soup), prepare_options(file, entry, options), name);
+    if (!prepared)
+        return prepared.error();
+    Object object;
+    object.name = entry.name;
+    object.file = entry.mesh;
+    object.mesh = std::move(prepared->mesh);
+    object.report = std::move(prepared->report);
+    object.pose = entry.pose;
+    object.material = entry.material;
+    return object;
+}
+
+} // namespace
+
+Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options)
+{
+    if (const auto status = check_options(options); !status)
+        return status.error();
+    auto entries = is_scene_file(file) ? read_scene_file(file) : Result<SceneFile>(file_round(file));
+    if (!entries)
+        return entries.error();
+
+    Scene scene;
+    scene.file = file;
+    scene.device = entries->device;
+    scene.servo = entries->servo;
+    scene.materials = entries->materials;
+    for (Material& material : scene.materials) {
+        material.stiffness_n_mm = options.stiffness_n_mm.value_or(material.stiffness_n_mm);
+        material.radius_mm = options.radius_mm.value_or(material.radius_mm);
+    }
+    std::uint64_t first_face = 0, first_vertex = 0;
+    for (const ObjectEntry& entry : entries->objects) {
+        auto object = make_object(*entries, entry, options);
+        if (!object)
+            return object.error();
+        object->first_face = static_cast<std::uint32_t>(first_face);
+        object->first_vertex = static_cast<std::uint32_t>(first_vertex);
+        first_face += object->mesh.faces.size();
+        first_vertex += object->mesh.vertices.size();
+        if (first_face >= mesh::no_neighbour || first_vertex >= mesh::no_neighbour)
+            return Error{file.string(), "has more than 2^32 - 2 triangles or vertices"};
+        scene.objects.push_back(std::move(*object));
+    }
+    return scene;
+}
+
+} // namespace phantom::scene

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What values a scene may hold, in one place: the scene file, the options and scenes/README.md agree.
+#pragma once
+
+namespace phantom::scene {
+
+struct Range {
+    double low, high;
+    const char* text; ///< for messages, after "expected "
+    [[nodiscard]] constexpr bool contains(double value) const { return value >= low && value <= high; }
+};
+
+namespace range {
+
+// The kernel border carries mN/mm in 32 bits; no device renders beyond some N/mm.
+inline constexpr Range stiffness_n_mm{0.001, 1000.0, "0.001 ... 1000 N/mm"};
+// Patches of a set are in nm in 32 bits round its origin: 100 mm leaves room for the faces themselves.
+inline constexpr Range radius_mm{0.001, 100.0, "0.001 ... 100 mm"};
+inline constexpr Range damping_ns_m{0.0, 1000.0, "0 ... 1000 N*s/m"};
+inline constexpr Range length_mm{1e-6, 1e6, "0.000001 ... 1000000 mm"};
+inline constexpr Range position_mm{-1e6, 1e6, "-1000000 ... 1000000 mm"};
+inline constexpr Range max_force_n{0.001, 1000.0, "0.001 ... 1000 N"};
+inline constexpr Range slew_n_per_ms{0.001, 1000.0, "0.001 ... 1000 N/ms"};
+inline constexpr Range ramp_ms{0.0, 10000.0, "0 ... 10000 ms"};
+inline constexpr Range rate_hz{1000.0, 10000.0, "1000 ... 10000 Hz"};
+inline constexpr Range angle_deg{-36000.0, 36000.0, "-36000 ... 36000 degrees"};
+
+} // namespace range
+
+} // namespace phantom::scene

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "scene/scene_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "mesh/bytes.hpp"
+#include "mesh/read.hpp"
+#include "mesh/vector.hpp"
+#include "scene/toml_reader.hpp"
+#include "scene/units.hpp"
+
+namespace phantom::scene {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> unit_words = {"um", "mm", "cm", "m", "in"};
+constexpr std::array<std::string_view, 2> shape_words = {"sphere", "box"};
+constexpr std::array<std::string_view, 3> model_words = {"paper", "projected", "off"};
+constexpr std::array<std::string_view, 2> combine_words = {"paper", "bounded"};
+constexpr std::array<std::string_view, 3> proxy_words = {"paper", "constrained", "off"};
+constexpr std::array<std::string_view, 3> arith_words = {"float", "fixed", "double"};
+constexpr int newton_steps_max = 3; ///< PHANTOM_NEWTON_STEPS_MAX
+
+/// Rotation by an angle about a unit axis (Rodrigues), row-major.
+std::array<double, 9> rotation_about(const mesh::Vec3& u, double angle)
+{
+    const double c = std::cos(angle), s = std::sin(angle), d = 1.0 - c;
+    return {c + u[0] * u[0] * d,        u[0] * u[1] * d - u[2] * s, u[0] * u[2] * d + u[1] * s,
+            u[1] * u[0] * d + u[2] * s, c + u[1] * u[1] * d,        u[1] * u[2] * d - u[0] * s,
+            u[2] * u[0] * d - u[1] * s, u[2] * u[1] * d + u[0] * s, c + u[2] * u[2] * d};
+}
+
+/// Rotation of a unit quaternion (w, x, y, z), row-major.
+std::array<double, 9> rotation_of(const std::array<double, 4>& q)
+{
+    const auto [w, x, y, z] = q;
+    return {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+            2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+            2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+}
+
+void read_axis_angle(TomlReader& pose, fdh::Pose& out)
+{
+    mesh::Vec3 axis{};
+    const bool has_axis = pose.numbers("axis", range::position_mm, axis);
+    const auto angle = pose.number("angle_deg", range::angle_deg);
+    if (pose.has("axis") != pose.has("angle_deg"))
+        pose.fault(pose.has("axis") ? "axis" : "angle_deg",
+                   "axis and angle_deg belong together, one is missing");
+    if (!has_axis || !angle)
+        return;
+    const mesh::Vec3 unit = mesh::normalized(axis);
+    if (mesh::dot(unit, unit) == 0)
+        pose.fault("axis", "is zero, expected a direction");
+    out.rotation = rotation_about(unit, *angle * std::numbers::pi / 180.0);
+}
+
+void read_quaternion(TomlReader& pose, fdh::Pose& out)
+{
+    std::array<double, 4> q{};
+    if (!pose.numbers("quaternion", {-1.01, 1.01, "a part of a unit quaternion"}, q))
+        return;
+    const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    // Written with three digits it is still a rotation; farther off it is a mistake.
+    if (std::abs(size - 1.0) > 0.01)
+        pose.fault("quaternion", fmt::format("has the length {:g}, expected [w, x, y, z] of length 1", size));
+    for (double& part : q)
+        part /= size;
+    out.rotation = rotation_of(q);
+}
+
+fdh::Pose read_pose(const toml::table& table, const std::string& path, Faults& faults)
+{
+    TomlReader pose(table, path, {"translation_mm", "axis", "angle_deg", "quaternion"}, faults);
+    fdh::Pose out;
+    pose.numbers("translation_mm", range::position_mm, out.translation);
+    if (pose.has("quaternion") && (pose.has("axis") || pose.has("angle_deg")))
+        pose.fault("quaternion", "stands beside axis and angle_deg, expected one of the two");
+    else if (pose.has("quaternion"))
+        read_quaternion(pose, out);
+    else
+        read_axis_angle(pose, out);
+    return out;
+}
+
+/// A key that has no meaning beside another.
+void refuse_beside(TomlReader& object, std::string_view key, std::string_view other)
+{
+    if (object.has(key))
+        object.fault(key, fmt::format("has no meaning with {}", other));
+}
+
+void read_shape(TomlReader& object, ObjectEntry& out)
+{
+    const auto shape = object.word("shape", shape_words);
+    if (!shape)
+        return;
+    refuse_beside(object, "unit", "shape: sizes are in mm");
+    refuse_beside(object, "fit_mm", "shape: sizes are in mm");
+    if (*shape == "sphere") {
+        out.shape = Shape::sphere;
+        out.sphere_radius_mm = object.number("radius_mm", range::length_mm).value_or(0);
+        if (!object.has("radius_mm"))
+            object.fault("shape", "a sphere needs radius_mm");
+        refuse_beside(object, "size_mm", "shape = \"sphere\"");
+    } else {
+        out.shape = Shape::box;
+        object.numbers("size_mm", range::length_mm, out.box_size_mm);
+        if (!object.has("size_mm"))
+            object.fault("shape", "a box needs size_mm = [x, y, z]");
+        refuse_beside(object, "radius_mm", "shape = \"box\"");
+    }
+}
+
+void read_mesh(TomlReader& object, const std::filesystem::path& scene, Faults& faults, ObjectEntry& out)
+{
+    const auto mesh = object.text("mesh");
+    if (!mesh)
+        return;
+    out.mesh = scene.parent_path() / *mesh;
+    out.mesh_where = faults.where(object.source("mesh"));
+    if (!std::filesystem::exists(out.mesh))
+        object.fault("mesh", "no such file: " + out.mesh.string());
+    else if (!mesh::is_mesh_file(out.mesh))
+        object.fault("mesh", fmt::format("is \"{}\", expected a file .ply, .obj, .stl or .off", *mesh));
+    out.unit = object.word("unit", unit_words);
+    out.fit_mm = object.number("fit_mm", range::length_mm);
+    refuse_beside(object, "radius_mm", "mesh");
+    refuse_beside(object, "size_mm", "mesh");
+}
+
+/// One [[object]], but for its material.
+ObjectEntry read_object(TomlReader& object, const std::string& path, const std::filesystem::path& scene,
+                        Faults& faults)
+{
+    ObjectEntry out;
+    if (object.has("mesh") == object.has("shape"))
+        object.fault(object.has("mesh") ? "shape" : "mesh",
+                     object.has("mesh")
+                         ? "stands beside mesh, expected one of the two"
+                         : "is missing, expected mesh = \"FILE\" or shape = \"sphere\" or \"box\"");
+    else if (object.has("mesh"))
+        read_mesh(object, scene, faults, out);
+    else
+        read_shape(object, out);
+    out.name = object.text("name").value_or(out.shape == Shape::sphere ? "sphere"
+                                            : out.shape == Shape::box  ? "box"
+                                                                       : out.mesh.stem().string());
+    if (const toml::table* pose = object.table("pose"))
+        out.pose = read_pose(*pose, path + "pose.", faults);
+    return out;
+}
+
+Material read_material(const std::string& name, const toml::table& table, Faults& faults)
+{
+    TomlReader reader(table, "material." + name + ".", {"stiffness_n_mm", "radius_mm", "damping_ns_m"},
+                      faults);
+    Material material;
+    material.name = name;
+    material.stiffness_n_mm =
+        reader.number("stiffness_n_mm", range::stiffness_n_mm).value_or(material.stiffness_n_mm);
+    material.radius_mm = reader.number("radius_mm", range::radius_mm).value_or(material.radius_mm);
+    material.damping_ns_m = reader.number("damping_ns_m", range::damping_ns_m);
+    return material;
+}
+
+void read_materials(TomlReader& root, Faults& faults, SceneFile& out)
+{
+    const toml::table* materials = root.table("material");
+    if (!materials)
+        return;
+    for (const auto& [key, value] : *materials) {
+        const std::string name(key.str());
+        if (const toml::table* table = value.as_table())
+            out.materials.push_back(read_material(name, *table, faults));
+        else
+            faults.add(value.source(), fmt::format("material.{}: is {}, expected a table [material.NAME]",
+                                                   name, shown(value)));
+    }
+}
+
+/// Index of the named material; the default one is made when it is first needed.
+std::uint32_t material_index(TomlReader& object, SceneFile& out)
+{
+    const auto wanted = object.text("material");
+    const std::string name = wanted.value_or("default");
+    const auto found = std::find_if(out.materials.begin(), out.materials.end(),
+                                    [&name](const Material& material) { return material.name == name; });
+    if (found != out.materials.end())
+        return static_cast<std::uint32_t>(found - out.materials.begin());
+    if (wanted) {
+        object.fault("material", fmt::format("no [material.{}] in this file", name));
+        return 0;
+    }
+    out.materials.emplace_back();
+    return static_cast<std::uint32_t>(out.materials.size() - 1);
+}
+
+void read_objects(TomlReader& root, const toml::table& table, const std::filesystem::path& scene,
+                  Faults& faults, SceneFile& out)
+{
+    const toml::array* objects = table["object"].as_array();
+    if (!objects || objects->empty()) {
+        root.fault("object", "expected at least one [[object]]");
+        return;
+    }
+    for (std::size_t i = 0; i < objects->size(); ++i) {
+        const std::string path = fmt::format("object {}: ", i + 1);
+        const toml::table* entry = objects->get(i)->as_table();
+        if (!entry) {
+            faults.add(objects->get(i)->source(), path + "expected a table [[object]]");
+            return;
+        }
+        TomlReader reader(
+            *entry, path,
+            {"name", "mesh", "shape", "radius_mm", "size_mm", "unit", "fit_mm", "pose", "material"}, faults);
+        ObjectEntry object = read_object(reader, path, scene, faults);
+        object.where = faults.where(entry->source());
+        object.material = material_index(reader, out);
+        for (const ObjectEntry& other : out.objects) {
+            if (other.name == object.name)
+                reader.fault("name", fmt::format("\"{}\" is taken by the object at {}, expected another name",
+                                                 object.name, other.where));
+        }
+        out.objects.push_back(std::move(object));
+    }
+}
+
+void read_device(const toml::table& table, Faults& faults, DeviceSettings& out)
+{
+    TomlReader device(table, "device.", {"max_force_n", "slew_n_per_ms", "ramp_ms"}, faults);
+    out.max_force_n = device.number("max_force_n", range::max_force_n);
+    out.slew_n_per_ms = device.number("slew_n_per_ms", range::slew_n_per_ms);
+    out.ramp_ms = device.number("ramp_ms", range::ramp_ms);
+}
+
+void read_servo(const toml::table& table, Faults& faults, ServoSettings& out)
+{
+    TomlReader servo(table, "servo.", {"rate_hz", "model", "combine", "proxy", "arith", "steps"}, faults);
+    out.rate_hz = servo.number("rate_hz", range::rate_hz);
+    out.model = servo.word("model", model_words);
+    out.combine = servo.word("combine", combine_words);
+    out.proxy = servo.word("proxy", proxy_words);
+    out.arith = servo.word("arith", arith_words);
+    out.steps = servo.whole_number("steps", 0, newton_steps_max);
+}
+
+} // namespace
+
+Result<SceneFile> read_scene_file(const std::filesystem::path& file)
+{
+    const auto bytes = mesh::load_bytes(file);
+    if (!bytes)
+        return bytes.error();
+    toml::table table;
+    try {
+        table = toml::parse(*bytes, file.string());
+    } catch (const toml::parse_error& error) {
+        return Error{fmt::format("{}:{}", file.string(), error.source().begin.line),
+                     std::string("is not TOML: ") + std::string(error.description())};
+    }
+    Faults faults(file.string());
+    SceneFile out;
+    TomlReader root(table, "", {"unit", "object", "material", "device", "servo"}, faults);
+    out.unit = root.word("unit", unit_words);
+    read_materials(root, faults, out);
+    read_objects(root, table, file, faults, out);
+    if (const toml::table* device = root.table("device"))
+        read_device(*device, faults, out.device);
+    if (const toml::table* servo = root.table("servo"))
+        read_servo(*servo, faults, out.servo);
+    if (faults.first())
+        return *faults.first();
+    return out;
+}
+
+} // namespace phantom::scene

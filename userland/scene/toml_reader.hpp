@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One TOML table, read key by key: type, range and spelling are checked, and the first fault is kept with
+// its line. Private to the scene unit: includes toml++.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <toml++/toml.h>
+
+#include "base/result.hpp"
+#include "scene/ranges.hpp"
+
+namespace phantom::scene {
+
+/// Where faults of one file go; the first counts.
+class Faults {
+  public:
+    explicit Faults(std::string file) : file_(std::move(file)) {}
+    void add(const toml::source_region& at, std::string what);
+    [[nodiscard]] const std::optional<Error>& first() const { return first_; }
+    [[nodiscard]] std::string where(const toml::source_region& at) const;
+
+  private:
+    std::string file_;
+    std::optional<Error> first_;
+};
+
+/// A view of a table; every getter returns nullopt when the key is absent or at fault (then in Faults).
+class TomlReader {
+  public:
+    /// `path` stands before keys in messages ("material.soft."), `keys` is every key that may be there.
+    TomlReader(const toml::table& table, std::string path, std::initializer_list<std::string_view> keys,
+               Faults& faults);
+
+    [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+    /// Line of the key's value, or of the table when the key is absent.
+    [[nodiscard]] const toml::source_region& source(std::string_view key) const;
+
+    std::optional<std::string> text(std::string_view key);
+    /// One of the words.
+    std::optional<std::string> word(std::string_view key, std::span<const std::string_view> words);
+    std::optional<double> number(std::string_view key, const Range& range);
+    std::optional<int> whole_number(std::string_view key, int low, int high);
+    /// Exactly values.size() numbers; false when absent or at fault.
+    bool numbers(std::string_view key, const Range& range, std::span<double> values);
+    /// A sub-table, or nullptr.
+    const toml::table* table(std::string_view key);
+
+    /// "key: what"
+    void fault(std::string_view key, const std::string& what);
+
+  private:
+    const toml::table& table_;
+    std::string path_;
+    Faults& faults_;
+};
+
+/// What stands there, for messages: "\"soft\"", "12", "a table".
+std::string shown(const toml::node& node);
+
+} // namespace phantom::scene
