@@ -85,8 +85,7 @@ void NearestCollector::finish()
 {
     double covered = max_radius_;
     if (sink_.size > count_) {
-        if (sink_.size > count_ + 1)
-            keep_nearest(count_ + 1);
+        keep_nearest(count_ + 1);
         const Hit& left_out = sink_.hits[count_];
         // The error bound has room for the rounding of the square root and the difference.
         covered = std::clamp(std::sqrt(left_out.distance) - error_, 0.0, max_radius_);

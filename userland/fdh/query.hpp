@@ -16,9 +16,11 @@ struct Hit {
     double distance = 0;        ///< from the query point to the nearest point of the triangle
 };
 
-/// Counters of one query, for benchmarks.
+/// What one query looked at, for benchmarks.
 struct QueryCounts {
-    std::uint64_t nodes = 0, leaves = 0, triangles = 0;
+    std::uint64_t nodes = 0;     ///< inner nodes, eight hulls each
+    std::uint64_t leaves = 0;    ///< up to eight triangles each
+    std::uint64_t triangles = 0; ///< found near enough, of which the nearest were kept
 };
 
 /// Result of "the N nearest within a radius": hits by ascending (distance, object, triangle), and the radius

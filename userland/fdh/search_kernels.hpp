@@ -168,7 +168,9 @@ struct Search {
             sink.full(sink);
         for (int lane = 0; lane < lanes; lane += S::double_width) {
             const V d = Distance::squared(leaf, lane, point);
-            for (unsigned mask = S::bits(d <= limit2); mask; mask &= mask - 1) {
+            unsigned mask = S::bits(d <= limit2);
+            sink.counts.triangles += static_cast<unsigned>(__builtin_popcount(mask));
+            for (; mask; mask &= mask - 1) {
                 const int i = __builtin_ctz(mask);
                 Hit& hit = sink.hits[sink.size++];
                 hit.object = query.object;

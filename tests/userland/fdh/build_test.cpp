@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Building: hard inputs, refused inputs, memory, threads.
+#include <cmath>
+#include <stdexcept>
+
+#include "oracle.hpp"
+
+namespace phantom::fdh::test {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::string refusal(const Mesh& mesh)
+{
+    try {
+        TriangleTree<14>::build(mesh.view());
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+} // namespace
+
+TEST(BuildTest, EmptyMeshFindsNothingAndCoversTheRadius)
+{
+    const auto tree = TriangleTree<14>::build({});
+    EXPECT_EQ(tree.triangles(), 0u);
+    Nearest found;
+    tree.nearest({1, 2, 3}, 64, 10, found);
+    EXPECT_TRUE(found.hits.empty());
+    EXPECT_EQ(found.coverage, 10);
+    std::vector<Hit> hits;
+    tree.within({1, 2, 3}, 10, hits);
+    EXPECT_TRUE(hits.empty());
+}
+
+TEST(BuildTest, ManyIdenticalTrianglesEndAndTieByNumber)
+{
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles.assign(100000, {0, 1, 2});
+    const auto tree = TriangleTree<14>::build(mesh.view());
+    Nearest found;
+    tree.nearest({0.25, 0.25, 2}, 64, infinity, found);
+    ASSERT_EQ(found.hits.size(), 64u);
+    for (std::uint32_t i = 0; i < 64; i++) {
+        EXPECT_EQ(found.hits[i].triangle, i);
+        EXPECT_NEAR(found.hits[i].distance, 2, tree.accuracy({0.25, 0.25, 2}));
+    }
+    EXPECT_LE(found.coverage, 2);
+}
+
+TEST(BuildTest, ManyIdenticalPointsEnd)
+{
+    Mesh mesh;
+    mesh.vertices = {{3, 4, 0}};
+    mesh.triangles.assign(100000, {0, 0, 0});
+    const auto tree = TriangleTree<14>::build(mesh.view());
+    Nearest found;
+    tree.nearest({0, 0, 0}, 10, infinity, found);
+    ASSERT_EQ(found.hits.size(), 10u);
+    EXPECT_NEAR(found.hits[9].distance, 5, 1e-12);
+}
+
+// Each triangle half as far as the one before: the heuristic splits off one or two at a time.
+TEST(BuildTest, GeometricSeriesStaysWithinTheSearchStack)
+{
+    Mesh mesh;
+    for (int repeat = 0; repeat < 200; repeat++)
+        for (int i = 0; i < 100; i++) {
+            const double x = std::ldexp(1.0, -i), y = std::ldexp(1.0, -repeat / 2);
+            mesh.add({x, y, 0}, {x * 1.01, y, 0}, {x, y * 1.01, x});
+        }
+    const auto tree = TriangleTree<26>::build(mesh.view());
+    Nearest found;
+    for (int i = 0; i < 60; i += 5) {
+        const Point p = {std::ldexp(1.0, -i), std::ldexp(1.1, -i / 2), 0};
+        tree.nearest(p, 64, infinity, found);
+        expect_nearest(true_distances(mesh, p), found, 64, infinity, tree.accuracy(p));
+    }
+}
+
+TEST(BuildTest, ExtremeSizesKeepTheirShape)
+{
+    const Mesh unit = sphere(3, 1);
+    for (double size : {1e-60, 1e-30, 1e30, 1e99}) {
+        const Mesh mesh = scaled(unit, size, {0, 0, 0});
+        const auto tree = TriangleTree<14>::build(mesh.view());
+        Nearest found;
+        const Point p = {0, 0, 2 * size};
+        tree.nearest(p, 4, infinity, found);
+        ASSERT_EQ(found.hits.size(), 4u);
+        EXPECT_NEAR(found.hits[0].distance, size, tree.accuracy(p));
+        if (size > 1e-37) {
+            EXPECT_LE(tree.accuracy(p), 1e-6 * size);
+        }
+    }
+}
+
+TEST(BuildTest, IndexOutOfRangeIsNamed)
+{
+    Mesh mesh = sphere(1, 1);
+    mesh.triangles[5][1] = 4711;
+    EXPECT_EQ(refusal(mesh), "fdh: triangle 5 refers to vertex 4711 of 18");
+}
+
+TEST(BuildTest, VertexThatIsNotFiniteOrTooFarIsNamed)
+{
+    for (double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, 1e101}) {
+        Mesh mesh = sphere(1, 1);
+        mesh.vertices[mesh.triangles[3][2]][1] = bad;
+        EXPECT_NE(refusal(mesh).find("has a vertex that is not finite or too far away"), std::string::npos)
+            << bad;
+    }
+}
+
+TEST(BuildTest, UnusedVertexIsNotLookedAt)
+{
+    Mesh mesh = sphere(2, 1);
+    mesh.vertices.push_back({infinity, 0, 1e9});
+    EXPECT_EQ(refusal(mesh), "accepted");
+}
+
+TEST(BuildTest, ThreadsDoNotChangeTheTree)
+{
+    std::mt19937_64 random(13);
+    const Mesh mesh = soup(40000, 100, random);
+    const auto one = TriangleTree<14>::build(mesh.view(), {.threads = 1});
+    const auto many = TriangleTree<14>::build(mesh.view(), {.threads = 7});
+    EXPECT_EQ(one.bytes(), many.bytes());
+    Nearest a, b;
+    for (const Point& p : probes(sphere(2, 100), 30, random)) {
+        one.nearest(p, 64, infinity, a);
+        many.nearest(p, 64, infinity, b);
+        EXPECT_EQ(a.counts.nodes, b.counts.nodes);
+        EXPECT_EQ(a.counts.leaves, b.counts.leaves);
+        ASSERT_EQ(a.hits.size(), b.hits.size());
+        for (std::size_t i = 0; i < a.hits.size(); i++)
+            EXPECT_EQ(a.hits[i].triangle, b.hits[i].triangle);
+    }
+}
+
+TEST(BuildTest, MemoryPerTriangleIsBounded)
+{
+    const Mesh mesh = sphere(6, 1);
+    const auto tree = TriangleTree<14>::build(mesh.view());
+    EXPECT_LE(tree.bytes(), 70 * mesh.triangles.size());
+}
+
+// A query that visited everything would be right, and useless.
+TEST(BuildTest, QueryVisitsFewLeaves)
+{
+    const Mesh mesh = sphere(6, 1);
+    const auto tree = TriangleTree<14>::build(mesh.view());
+    Nearest found;
+    tree.nearest({0.5, 0.6, 0.7}, 64, infinity, found);
+    EXPECT_LE(found.counts.leaves, 150u) << "of about 4700";
+    EXPECT_GE(found.counts.triangles, 64u);
+}
+
+} // namespace phantom::fdh::test
