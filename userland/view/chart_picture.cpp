@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "view/chart_picture.hpp"
+
+#include <algorithm>
+
+#include "view/colour.hpp"
+#include "view/force_chart.hpp"
+#include "view/stage.hpp"
+
+namespace phantom::view {
+
+Status save_chart(const std::deque<Touch>& samples, std::optional<double> marked_s, const Options& options,
+                  const std::filesystem::path& file)
+{
+    const int width = options.width, height = std::max(options.height / 2, 240);
+    vtkNew<vtkRenderer> renderer;
+    renderer->SetBackground(palette::panel[0], palette::panel[1], palette::panel[2]);
+    ForceChart chart(renderer, ForceChart::Lines::norm_and_components);
+    chart.set_size(width, height);
+    chart.set_font_size(std::clamp(width / 85, 10, 40));
+    chart.mark(marked_s);
+    chart.show(samples, samples.front().time_s, samples.back().time_s, 0.01);
+
+    vtkNew<vtkRenderWindow> window;
+    window->SetOffScreenRendering(true);
+    window->SetSize(width, height);
+    window->SetMultiSamples(8);
+    window->AddRenderer(renderer);
+    window->Render();
+    return save_window(window, file);
+}
+
+} // namespace phantom::view

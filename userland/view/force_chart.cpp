@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "view/force_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <vtkAxis.h>
+#include <vtkBrush.h>
+#include <vtkChartLegend.h>
+#include <vtkContextScene.h>
+#include <vtkDoubleArray.h>
+#include <vtkPen.h>
+#include <vtkPlot.h>
+#include <vtkTextProperty.h>
+
+#include "view/colour.hpp"
+
+namespace phantom::view {
+
+namespace {
+
+/// Columns of the table: time, |F|, Fx, Fy, Fz.
+constexpr std::array<const char*, 5> column_names{"time, s", "|F|", "Fx", "Fy", "Fz"};
+/// A chart is a thousand pixels wide or so: per bin the smallest and the largest sample are enough.
+constexpr std::size_t bins = 1200;
+
+double column_value(const Touch& touch, std::size_t column)
+{
+    if (column == 0)
+        return touch.time_s;
+    return column == 1 ? touch.force_norm_n() : touch.force_n[column - 2];
+}
+
+/// Samples to draw: of each bin the weakest and the strongest, in order of time.
+std::vector<const Touch*> envelope(const std::deque<Touch>& samples)
+{
+    std::vector<const Touch*> kept;
+    const std::size_t per_bin = samples.size() / bins;
+    if (per_bin < 3) {
+        for (const Touch& touch : samples)
+            kept.push_back(&touch);
+        return kept;
+    }
+    for (std::size_t begin = 0; begin < samples.size(); begin += per_bin) {
+        const Touch *weakest = &samples[begin], *strongest = &samples[begin];
+        for (std::size_t i = begin; i < std::min(begin + per_bin, samples.size()); ++i) {
+            if (samples[i].force_norm_n() < weakest->force_norm_n())
+                weakest = &samples[i];
+            if (samples[i].force_norm_n() > strongest->force_norm_n())
+                strongest = &samples[i];
+        }
+        kept.push_back(weakest->time_s <= strongest->time_s ? weakest : strongest);
+        if (weakest != strongest)
+            kept.push_back(weakest->time_s <= strongest->time_s ? strongest : weakest);
+    }
+    return kept;
+}
+
+vtkSmartPointer<vtkDoubleArray> column(const char* name)
+{
+    auto array = vtkSmartPointer<vtkDoubleArray>::New();
+    array->SetName(name);
+    return array;
+}
+
+/// 1, 2 or 5 times a power of ten, not below x: a round top for an axis.
+double round_up(double x)
+{
+    const double decade = std::pow(10.0, std::floor(std::log10(x)));
+    for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+        if (step * decade >= x * (1 - 1e-9))
+            return step * decade;
+    return 10 * decade;
+}
+
+void style_axis(vtkAxis* axis, const char* title)
+{
+    axis->SetTitle(title);
+    axis->SetBehavior(vtkAxis::FIXED);
+    for (vtkTextProperty* text : {axis->GetTitleProperties(), axis->GetLabelProperties()}) {
+        text->SetFontFamilyToArial();
+        text->BoldOff();
+        set_colour(text, palette::ink);
+    }
+    const auto byte = [](double part) { return static_cast<unsigned char>(std::lround(255 * part)); };
+    const auto& rule = palette::rule;
+    axis->GetGridPen()->SetColor(byte(0.90), byte(0.91), byte(0.925));
+    axis->GetPen()->SetColor(byte(rule[0]), byte(rule[1]), byte(rule[2]));
+}
+
+} // namespace
+
+ForceChart::ForceChart(vtkRenderer* renderer, Lines lines) : lines_(lines)
+{
+    for (const char* name : column_names)
+        table_->AddColumn(column(name));
+    marker_->AddColumn(column("time, s"));
+    marker_->AddColumn(column("shown"));
+
+    style_axis(chart_->GetAxis(vtkAxis::BOTTOM), "time, s");
+    style_axis(chart_->GetAxis(vtkAxis::LEFT), lines == Lines::norm ? "|F|, N" : "force, N");
+    add_line(1, palette::ink, 2.0F, "|F|");
+    if (lines == Lines::norm_and_components) {
+        add_line(2, palette::component_x, 1.6F, "Fx");
+        add_line(3, palette::component_y, 1.6F, "Fy");
+        add_line(4, palette::component_z, 1.6F, "Fz");
+        chart_->SetShowLegend(true);
+        vtkChartLegend* legend = chart_->GetLegend();
+        legend->SetHorizontalAlignment(vtkChartLegend::RIGHT);
+        legend->SetVerticalAlignment(vtkChartLegend::TOP);
+        legend->GetLabelProperties()->SetFontFamilyToArial();
+        legend->GetPen()->SetLineType(vtkPen::NO_PEN);
+        legend->GetBrush()->SetColorF(1, 1, 1, 0.85);
+    }
+    vtkPlot* marker = chart_->AddPlot(vtkChart::LINE);
+    marker->SetInputData(marker_, 0, 1);
+    set_colour(marker, palette::force);
+    marker->SetWidth(1.6F);
+    marker->GetPen()->SetLineType(vtkPen::DASH_LINE);
+    marker->SetLegendVisibility(false);
+
+    chart_->SetAutoSize(false);
+    chart_->GetBackgroundBrush()->SetColorF(palette::panel[0], palette::panel[1], palette::panel[2]);
+    actor_->GetScene()->AddItem(chart_);
+    renderer->AddActor(actor_);
+}
+
+void ForceChart::add_line(int column, const std::array<double, 3>& colour, float width, const char* name)
+{
+    vtkPlot* line = chart_->AddPlot(vtkChart::LINE);
+    line->SetInputData(table_, 0, column);
+    set_colour(line, colour);
+    line->SetWidth(width);
+    line->SetLabel(name);
+}
+
+void ForceChart::set_font_size(int pixels)
+{
+    for (const int place : {vtkAxis::BOTTOM, vtkAxis::LEFT}) {
+        chart_->GetAxis(place)->GetTitleProperties()->SetFontSize(pixels);
+        chart_->GetAxis(place)->GetLabelProperties()->SetFontSize(pixels);
+    }
+    chart_->GetLegend()->GetLabelProperties()->SetFontSize(pixels);
+}
+
+void ForceChart::set_size(int width, int height)
+{
+    chart_->SetSize(vtkRectf(0, 0, static_cast<float>(width), static_cast<float>(height)));
+}
+
+void ForceChart::show(const std::deque<Touch>& samples, double from_s, double to_s, double full_scale_n)
+{
+    double low = 0, high = full_scale_n;
+    const auto kept = envelope(samples);
+    table_->SetNumberOfRows(static_cast<vtkIdType>(kept.size()));
+    const std::size_t drawn = lines_ == Lines::norm ? 2 : column_names.size();
+    for (std::size_t row = 0; row < kept.size(); ++row) {
+        for (std::size_t i = 0; i < column_names.size(); ++i) {
+            const double value = column_value(*kept[row], i);
+            table_->SetValue(static_cast<vtkIdType>(row), static_cast<vtkIdType>(i), value);
+            if (i > 0 && i < drawn) {
+                low = std::min(low, value);
+                high = std::max(high, value);
+            }
+        }
+    }
+    table_->Modified();
+    high = round_up(1.05 * high);
+    low = low < 0 ? -round_up(-1.05 * low) : 0;
+    chart_->GetAxis(vtkAxis::BOTTOM)->SetRange(from_s, std::max(to_s, from_s + 1e-3));
+    chart_->GetAxis(vtkAxis::LEFT)->SetRange(low, high);
+
+    marker_->SetNumberOfRows(marked_s_ ? 2 : 0);
+    if (marked_s_) {
+        for (vtkIdType row = 0; row < 2; ++row) {
+            marker_->SetValue(row, 0, *marked_s_);
+            marker_->SetValue(row, 1, row == 0 ? low : high);
+        }
+    }
+    marker_->Modified();
+    chart_->RecalculateBounds();
+}
+
+void ForceChart::mark(std::optional<double> time_s)
+{
+    marked_s_ = time_s;
+}
+
+} // namespace phantom::view

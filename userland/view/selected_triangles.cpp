@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "view/selected_triangles.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <vtkActor.h>
+#include <vtkCellArray.h>
+#include <vtkPoints.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+
+#include "view/colour.hpp"
+#include "view/scene_actors.hpp"
+
+namespace phantom::view {
+
+SelectedTriangles::SelectedTriangles(const scene::Scene& scene) : scene_(scene)
+{
+    show({});
+}
+
+void SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, double edge_width) const
+{
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(triangles_);
+    // They lie in the surface: draw them a hair nearer.
+    mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(-2, -2);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    vtkProperty* look = actor->GetProperty();
+    set_colour(look, palette::selected);
+    look->SetOpacity(opacity);
+    look->SetAmbient(0.35);
+    look->SetDiffuse(0.65);
+    look->SetInterpolationToFlat();
+    look->EdgeVisibilityOn();
+    look->SetEdgeColor(palette::selected_edge[0], palette::selected_edge[1], palette::selected_edge[2]);
+    look->SetLineWidth(static_cast<float>(edge_width));
+    renderer->AddActor(actor);
+}
+
+void SelectedTriangles::show(std::span<const fdh::Hit> hits)
+{
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> faces;
+    for (const fdh::Hit& hit : hits) {
+        if (hit.object >= scene_.objects.size())
+            continue;
+        const scene::Object& object = scene_.objects[hit.object];
+        faces->InsertNextCell(3);
+        for (const std::uint32_t vertex : object.mesh.faces.at(hit.triangle)) {
+            const Vec3 corner = to_world(object.pose, object.mesh.vertices[vertex]);
+            faces->InsertCellPoint(points->InsertNextPoint(corner.data()));
+        }
+    }
+    count_ = static_cast<std::size_t>(faces->GetNumberOfCells());
+    triangles_->SetPoints(points);
+    triangles_->SetPolys(faces);
+    triangles_->Modified();
+}
+
+double SelectedTriangles::reach_mm(const Vec3& centre) const
+{
+    vtkPoints* points = triangles_->GetPoints();
+    std::vector<double> distances;
+    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i) {
+        Vec3 corner{};
+        points->GetPoint(i, corner.data());
+        distances.push_back(length(corner - centre));
+    }
+    if (distances.empty())
+        return 0;
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return *middle;
+}
+
+Vec3 SelectedTriangles::facing(const Vec3& otherwise) const
+{
+    vtkPoints* points = triangles_->GetPoints();
+    Vec3 sum{};
+    for (vtkIdType i = 0; i + 2 < points->GetNumberOfPoints(); i += 3) {
+        Vec3 a{}, b{}, c{};
+        points->GetPoint(i, a.data());
+        points->GetPoint(i + 1, b.data());
+        points->GetPoint(i + 2, c.data());
+        sum = sum + cross(b - a, c - a);
+    }
+    return unit_or(sum, otherwise);
+}
+
+} // namespace phantom::view

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The window and its four parts: the whole scene on the left with words in its corner; on the right
+// a close-up of the contact, and force over time below it.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include "base/result.hpp"
+#include "scene/scene.hpp"
+#include "view/camera.hpp"
+#include "view/flat_shapes.hpp"
+#include "view/force_chart.hpp"
+#include "view/probe_actors.hpp"
+#include "view/scene_actors.hpp"
+#include "view/selected_triangles.hpp"
+#include "view/touch.hpp"
+
+namespace phantom::view {
+
+/// Words in the corner of the whole view.
+struct PanelRow {
+    std::string name, value;
+    bool warning = false;
+};
+struct Panel {
+    std::string title, subtitle;
+    std::vector<PanelRow> rows;
+    std::vector<std::string> hints; ///< lines at the lower edge
+};
+
+class Stage {
+  public:
+    /// The scene must outlive the stage.
+    Stage(const scene::Scene& scene, int width, int height, bool offscreen);
+
+    [[nodiscard]] vtkRenderWindow* window() { return window_; }
+    [[nodiscard]] vtkRenderer* whole() { return whole_; }
+    /// The close-up, for what shall be seen there too.
+    [[nodiscard]] vtkRenderer* spot() { return spot_; }
+    [[nodiscard]] const SceneActors& surfaces() const { return surfaces_; }
+    [[nodiscard]] ForceChart& chart() { return chart_; }
+    [[nodiscard]] double extent_mm() const { return extent_mm_; }
+
+    void set_camera(const CameraAngles& angles);
+    /// The force whose arrow is as long as arrows get. Larger ones raise it.
+    void set_full_scale(double force_n) { full_scale_n_ = force_n; }
+    /// The scalar bar of path colours, up to that force.
+    void set_colour_bar(double max_force_n) { colour_bar_n_ = max_force_n; }
+
+    /// Shows one moment. normal: outward, at the contact. blend: how far the close-up moves from where
+    /// it looks to where it should, 0 ... 1 (1: at once).
+    void show(const Touch& touch, std::span<const fdh::Hit> selected, const Vec3& normal, double radius_mm,
+              double blend);
+    void set_panel(Panel panel) { panel_ = std::move(panel); }
+    void render();
+    /// Renders and writes a PNG: whole or not at all.
+    Status save_png(const std::filesystem::path& file);
+
+  private:
+    struct Spot {
+        Vec3 centre{}, normal{0, 1, 0};
+        double half_height_mm = 0; ///< 0: not looked yet
+    };
+    void look();
+    void arrange();
+    void aim_spot(const Touch& touch, const Vec3& normal, double radius_mm, double blend);
+    void size_probes(const Touch& touch, double radius_mm);
+    void draw_whole_overlay();
+    void draw_colour_bar();
+    void draw_region_marker();
+    void draw_spot_overlay(double radius_mm, bool apart);
+    [[nodiscard]] int font(double factor = 1) const;
+
+    const scene::Scene& scene_;
+    SceneActors surfaces_;
+    vtkNew<vtkRenderWindow> window_;
+    vtkNew<vtkRenderer> base_, whole_, spot_, graph_;
+    SelectedTriangles selected_;
+    ProbeActors whole_probe_, spot_probe_;
+    ForceChart chart_;
+    FlatShapes base_shapes_, whole_shapes_, spot_shapes_;
+
+    std::array<int, 2> arranged_{0, 0}; ///< window size that the layout was made for
+    std::array<int, 2> whole_px_{}, spot_px_{};
+    CameraAngles angles_;
+    Spot looked_;
+    Panel panel_;
+    Touch touch_;
+    double extent_mm_ = 1, full_scale_n_ = 1, radius_mm_ = 1;
+    std::optional<double> colour_bar_n_;
+};
+
+/// Renders the window and writes it as PNG: to a temporary file beside it, then renamed.
+Status save_window(vtkRenderWindow* window, const std::filesystem::path& file);
+
+} // namespace phantom::view

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "view/surface_picker.hpp"
+
+#include <vtkGenericCell.h>
+#include <vtkNew.h>
+#include <vtkStaticCellLocator.h>
+
+namespace phantom::view {
+
+namespace {
+
+/// The pose backward: world to object frame.
+Vec3 to_local(const fdh::Pose& pose, const Vec3& world)
+{
+    const Vec3 at = world - pose.translation;
+    const auto& r = pose.rotation;
+    return {r[0] * at[0] + r[3] * at[1] + r[6] * at[2], r[1] * at[0] + r[4] * at[1] + r[7] * at[2],
+            r[2] * at[0] + r[5] * at[1] + r[8] * at[2]};
+}
+
+} // namespace
+
+struct SurfacePicker::Part {
+    fdh::Pose pose;
+    vtkNew<vtkStaticCellLocator> locator;
+};
+
+SurfacePicker::SurfacePicker(const scene::Scene& scene, const SceneActors& surfaces)
+{
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        auto part = std::make_unique<Part>();
+        part->pose = scene.objects[i].pose;
+        part->locator->SetDataSet(surfaces.surfaces()[i]);
+        part->locator->BuildLocator();
+        parts_.push_back(std::move(part));
+    }
+}
+
+SurfacePicker::~SurfacePicker() = default;
+
+std::optional<Vec3> SurfacePicker::first_hit(const Vec3& from, const Vec3& to) const
+{
+    std::optional<Vec3> nearest;
+    double nearest_part = 2; // of the way; a hit has at most 1
+    vtkNew<vtkGenericCell> cell;
+    for (const auto& part : parts_) {
+        const Vec3 begin = to_local(part->pose, from), end = to_local(part->pose, to);
+        double t = 0;
+        Vec3 at{}, parametric{};
+        int sub_cell = 0;
+        vtkIdType face = 0;
+        if (part->locator->IntersectWithLine(begin.data(), end.data(), 0.0, t, at.data(), parametric.data(),
+                                             sub_cell, face, cell) == 0 ||
+            t >= nearest_part)
+            continue;
+        nearest_part = t;
+        nearest = to_world(part->pose, at);
+    }
+    return nearest;
+}
+
+} // namespace phantom::view
