@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * block.h - a set of patches as the tick reads it: blocks of eight, one row per quantity.
+ *
+ * Notation: corners x0 x1 x2 counter-clockwise from outside, unit vertex normals m0 m1 m2, unit
+ * face normal g, contact radius R, stiffness k. Edge i goes from corner i to corner i + 1.
+ * Lengths in mm, forces in N, stiffness in N/mm; corners stay integer nm, so that the distance
+ * from the tip is formed exactly (nm_difference()).
+ *
+ * Lanes that can never be in contact (patches that cannot be computed, and the padding of the last
+ * block) have R = -1, a bounding sphere of no size and three equal corners.
+ */
+#ifndef PHANTOM_FLOAT_BLOCK_H
+#define PHANTOM_FLOAT_BLOCK_H
+
+#include "lanes.h"
+
+/* A row: one value for each of the eight patches of a block. */
+typedef lanes real_row[PHANTOM_STEPS];
+typedef nm_lanes nm_row[PHANTOM_STEPS];
+typedef u32 index_row[PHANTOM_BLOCK];
+
+struct row3 {
+	real_row x, y, z;
+};
+
+/* What Algorithm 1 needs of an edge. */
+struct paper_edge {
+	struct row3 along; /* e = x_(i+1) - x_i */
+	real_row inverse_length2; /* 1 / |e|^2 */
+	struct row3 normal; /* m_i */
+	struct row3 normal_along; /* m_(i+1) - m_i */
+	struct row3 wall; /* m_i x e / |e| */
+	struct row3 wall_along; /* (m_(i+1) - m_i) x e / |e| */
+};
+
+struct block {
+	/* read for every patch on every tick */
+	nm_row corner[3][3]; /* [corner][axis] */
+	struct row3 face_normal; /* g */
+	real_row radius; /* R of the patch's material */
+	struct row3 centre; /* centroid - x0 */
+	real_row extent; /* largest distance of a corner from the centroid */
+
+	/* read where the tip is near */
+	real_row stiffness; /* k */
+	struct paper_edge edge[3];
+
+	/*
+	 * projected: the cubic of projected.h, divided by |A0|, so that its constant term is the
+	 * height above the plane.
+	 */
+	real_row area; /* |A0|, twice the area, mm^2 */
+	struct row3 area1, area2; /* A1 / |A0|, A2 / |A0| */
+	real_row normal_area0, normal_area1, normal_area2; /* m0 . A0, A1, A2, each / |A0| */
+	real_row height_limit; /* no contact has a larger h */
+
+	index_row face; /* phantom_patch.face */
+	index_row vertex[3]; /* phantom_patch.vertex */
+	index_row material;
+};
+
+struct float_material {
+	real stiffness; /* N/mm */
+	real radius; /* mm */
+	real damping; /* N per mm/s; 0 unless the material names the effect */
+};
+
+/* Found by `paper` in one step of a block; kept for the overlap test. */
+struct paper_step {
+	mask_lanes contact;
+	struct lanes3 normal; /* n */
+	lanes length; /* |DP| */
+	lanes magnitude; /* |s| */
+	struct lanes3 plane[3]; /* normal of the plane through the tip and edge i */
+	lanes height; /* d */
+	u32 block, step;
+};
+
+/* One root of `projected`. */
+struct projected_root {
+	struct real3 normal; /* n */
+	real height; /* h |N| */
+	real magnitude; /* k (R - h |N|) */
+	real weight; /* 0 ... 1, of the soft walls */
+	real sign; /* +1, or -1 where the shell has folded over */
+	u32 patch;
+	u32 soft_walls; /* walls on which the tip lies, but for rounding */
+};
+
+#define PROJECTED_ROOTS 3 /* a patch has at most that many: its equation is a cubic */
+
+/*
+ * What a tick writes, for each block. The set is read-only but for this: one tick at a time may
+ * use a set.
+ */
+union scratch {
+	struct paper_step paper[PHANTOM_STEPS];
+	struct projected_root projected[PHANTOM_BLOCK * PROJECTED_ROOTS];
+};
+
+struct phantom_float_set {
+	u32 patch_count;
+	u32 block_count;
+	u32 material_count;
+	u32 refused;
+	u64 scratch_offset; /* from the set's begin, bytes: union scratch [block_count] */
+	/*
+	 * Largest extent of a patch and largest contact radius, mm: they bound every distance
+	 * that is computed, hence every rounding error. See rounding_mm().
+	 */
+	real extent;
+	real radius;
+	struct float_material materials[PHANTOM_MATERIALS_MAX];
+	struct block blocks[] __attribute__((aligned(PHANTOM_FLOAT_SET_ALIGN)));
+};
+
+/*
+ * What rounding can do to a height or a wall distance: a few units in the last place of float32
+ * over the largest distance involved, and the nm grid of the border. Positions closer to a plane
+ * than that count as on it. 4 nm for patches of a mm with R = 2 mm.
+ */
+LANES_INLINE real rounding_mm(const struct phantom_float_set *set)
+{
+	return (real)1e-6 * (1 + set->extent + set->radius);
+}
+
+LANES_INLINE struct paper_step *scratch_paper(const struct phantom_float_set *set)
+{
+	return (struct paper_step *)((u8 *)set + set->scratch_offset);
+}
+
+LANES_INLINE struct projected_root *scratch_projected(const struct phantom_float_set *set)
+{
+	return (struct projected_root *)((u8 *)set + set->scratch_offset);
+}
+
+LANES_INLINE struct lanes3 row3_step(const struct row3 *row, u32 step)
+{
+	return (struct lanes3){row->x[step], row->y[step], row->z[step]};
+}
+
+LANES_INLINE real row_lane(const lanes *row, u32 lane)
+{
+	return row[lane / PHANTOM_LANES][lane % PHANTOM_LANES];
+}
+
+LANES_INLINE struct real3 row3_lane(const struct row3 *row, u32 lane)
+{
+	return (struct real3){row_lane(row->x, lane), row_lane(row->y, lane),
+			      row_lane(row->z, lane)};
+}
+
+/* A point in nm, once per lane. */
+struct nm_point {
+	nm_lanes axis[3];
+};
+
+LANES_INLINE struct nm_point nm_point(const s32 nm[3])
+{
+	return (struct nm_point){{nm_all(nm[0]), nm_all(nm[1]), nm_all(nm[2])}};
+}
+
+/* point - x_corner, mm. */
+LANES_INLINE struct lanes3 from_corner(const struct block *block, u32 step, u32 corner,
+				       const struct nm_point *point)
+{
+	return (struct lanes3){
+		nm_difference(point->axis[0], block->corner[corner][0][step]),
+		nm_difference(point->axis[1], block->corner[corner][1][step]),
+		nm_difference(point->axis[2], block->corner[corner][2][step]),
+	};
+}
+
+/* The same for one patch. */
+LANES_INLINE struct real3 from_corner_lane(const struct block *block, u32 lane, u32 corner,
+					   const s32 nm[3])
+{
+	u32 step = lane / PHANTOM_LANES, l = lane % PHANTOM_LANES;
+
+	return (struct real3){
+		(real)((coordinate)nm[0] - block->corner[corner][0][step][l]) * MM_PER_NM,
+		(real)((coordinate)nm[1] - block->corner[corner][1][step][l]) * MM_PER_NM,
+		(real)((coordinate)nm[2] - block->corner[corner][2][step][l]) * MM_PER_NM,
+	};
+}
+
+/* Lanes whose triangle may lie within `reach` of the point q = point - x0. */
+LANES_INLINE mask_lanes within_reach(const struct block *block, u32 step, struct lanes3 q,
+				     lanes reach)
+{
+	struct lanes3 away = lanes3_sub(q, row3_step(&block->centre, step));
+	lanes far = reach + block->extent[step];
+
+	return (lanes3_dot(away, away) <= far * far) & (far >= 0);
+}
+
+#endif /* PHANTOM_FLOAT_BLOCK_H */

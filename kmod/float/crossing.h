@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * crossing.h - where a segment passes through the faces of a set.
+ *
+ * Watertight at shared edges and vertices. The corners are seen from the segment's begin, sheared
+ * so that the segment runs along one axis (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
+ * Intersection"), and the segment passes inside where the three 2-D edge functions have one sign,
+ * zero included. A corner gives the same two numbers in every face that has it, and the sign of
+ * b_x c_y - b_y c_x is never wrong in floating point, only possibly zero: so no path slips
+ * between faces, not even exactly through an edge or a vertex.
+ *
+ * Which side a point is on is decided by its height over the face, not by the place of the
+ * crossing on the segment: the end of one tick's path is the begin of the next one's, both get the
+ * same height, and no crossing falls between two ticks. A begin up to rounding_mm() on the wrong
+ * side counts as on the plane.
+ */
+#ifndef PHANTOM_FLOAT_CROSSING_H
+#define PHANTOM_FLOAT_CROSSING_H
+
+#include "block.h"
+
+enum crossing_way {
+	CROSSING_INWARD, /* from the front of a face to its back */
+	CROSSING_OUTWARD,
+};
+
+struct segment {
+	struct nm_point begin, end;
+	s32 begin_nm[3];
+	s64 way_nm[3]; /* end - begin */
+	real length; /* mm */
+	u32 x, y, z; /* axes: z is the longest of the way */
+	real shear_x, shear_y; /* way_x / way_z, way_y / way_z */
+	real inverse_z; /* 1 / way_z, 1 / mm */
+};
+
+struct crossing {
+	real along; /* 0 at the segment's begin, 1 at its end */
+	u32 patch; /* PHANTOM_PATCH_NONE: nothing is crossed */
+};
+
+/* False for a segment without length. */
+static inline bool segment_set(struct segment *segment, const s32 begin_nm[3], const s32 end_nm[3])
+{
+	real way[3];
+	u32 axis;
+
+	segment->begin = nm_point(begin_nm);
+	segment->end = nm_point(end_nm);
+	segment->z = 0;
+	for (axis = 0; axis < 3; axis++) {
+		segment->begin_nm[axis] = begin_nm[axis];
+		segment->way_nm[axis] = (s64)end_nm[axis] - begin_nm[axis];
+		way[axis] = (real)segment->way_nm[axis] * MM_PER_NM;
+		if (real_abs(way[axis]) > real_abs(way[segment->z]))
+			segment->z = axis;
+	}
+	segment->x = (segment->z + 1) % 3;
+	segment->y = (segment->z + 2) % 3;
+	if (way[segment->z] == 0)
+		return false;
+	segment->inverse_z = 1 / way[segment->z];
+	segment->shear_x = way[segment->x] * segment->inverse_z;
+	segment->shear_y = way[segment->y] * segment->inverse_z;
+	segment->length = real_sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+	return true;
+}
+
+/* begin_nm + along (end - begin), to the nearest nm. */
+static inline void segment_point(const struct segment *segment, real along, s32 out_nm[3])
+{
+	u32 axis;
+
+	for (axis = 0; axis < 3; axis++) {
+		real step = along * (real)segment->way_nm[axis];
+
+		out_nm[axis] = (s32)(segment->begin_nm[axis] +
+				     (s64)(step + (step < 0 ? (real)-0.5 : (real)0.5)));
+	}
+}
+
+/* A corner in the sheared frame of the segment. */
+struct sheared {
+	lanes x, y, z;
+};
+
+LANES_INLINE struct sheared crossing_corner(const struct block *block, u32 step, u32 corner,
+					    const struct segment *segment)
+{
+	u32 x = segment->x, y = segment->y, z = segment->z;
+	struct sheared out;
+
+	out.z = nm_difference(block->corner[corner][z][step], segment->begin.axis[z]);
+	out.x = nm_difference(block->corner[corner][x][step], segment->begin.axis[x]) -
+		segment->shear_x * out.z;
+	out.y = nm_difference(block->corner[corner][y][step], segment->begin.axis[y]) -
+		segment->shear_y * out.z;
+	return out;
+}
+
+/*
+ * Lanes of the step that the segment crosses in that way; *along is valid there. The caller has
+ * ruled out lanes that are out of reach or on the wrong sides.
+ */
+LANES_INLINE mask_lanes crossing_inside(const struct block *block, u32 step,
+					const struct segment *segment, enum crossing_way way,
+					lanes *along)
+{
+	struct sheared a = crossing_corner(block, step, 0, segment);
+	struct sheared b = crossing_corner(block, step, 1, segment);
+	struct sheared c = crossing_corner(block, step, 2, segment);
+	lanes u = b.x * c.y - b.y * c.x;
+	lanes v = c.x * a.y - c.y * a.x;
+	lanes w = a.x * b.y - a.y * b.x;
+	lanes low = lanes_min(lanes_min(u, v), w), high = lanes_max(lanes_max(u, v), w);
+	/* twice the area as seen along +z: positive where the way goes out of the front */
+	lanes area = u + v + w;
+	lanes outward = segment->inverse_z > 0 ? area : -area;
+	mask_lanes right_way = way == CROSSING_OUTWARD ? outward > 0 : outward < 0;
+
+	*along = (u * a.z + v * b.z + w * c.z) / lanes_select(right_way, area, lanes_all(1)) *
+		 segment->inverse_z;
+	*along = lanes_min(lanes_max(*along, lanes_all(0)), lanes_all(1));
+	return right_way & ((low >= 0) | (high <= 0));
+}
+
+/* Lanes within reach of the segment whose sides its two ends are on. */
+LANES_INLINE mask_lanes crossing_candidates(const struct block *block, u32 step,
+					    const struct segment *segment, enum crossing_way way,
+					    real rounding)
+{
+	struct lanes3 g = row3_step(&block->face_normal, step);
+	struct lanes3 q = from_corner(block, step, 0, &segment->end);
+	lanes end = lanes3_dot(g, q), begin;
+	mask_lanes candidates = way == CROSSING_INWARD ? end < 0 : end >= 0;
+
+	candidates &= within_reach(block, step, q, lanes_all(segment->length));
+	if (!mask_bits(candidates))
+		return candidates;
+	q = from_corner(block, step, 0, &segment->begin);
+	begin = lanes3_dot(g, q);
+	return candidates & (way == CROSSING_INWARD ? begin >= -rounding : begin <= rounding);
+}
+
+/*
+ * The first crossing (or the last one) with along > after; of equals the patch with the lowest
+ * index.
+ */
+static inline struct crossing crossing_find(const struct phantom_float_set *set,
+					    const struct segment *segment, enum crossing_way way,
+					    bool last, real after)
+{
+	struct crossing found = {0, PHANTOM_PATCH_NONE};
+	real rounding = rounding_mm(set);
+	u32 block_index, step, lane;
+
+	for (block_index = 0; block_index < set->block_count; block_index++) {
+		const struct block *block = &set->blocks[block_index];
+
+		for (step = 0; step < PHANTOM_STEPS; step++) {
+			mask_lanes candidates =
+				crossing_candidates(block, step, segment, way, rounding);
+			lanes along;
+			u32 crossed;
+
+			if (!mask_bits(candidates))
+				continue;
+			crossed = mask_bits(candidates &
+					    crossing_inside(block, step, segment, way, &along));
+			for (lane = 0; crossed >> lane; lane++) {
+				if (!(crossed >> lane & 1) || !(along[lane] > after))
+					continue;
+				if (found.patch != PHANTOM_PATCH_NONE &&
+				    !(last ? along[lane] > found.along : along[lane] < found.along))
+					continue;
+				found.along = along[lane];
+				found.patch =
+					block_index * PHANTOM_BLOCK + step * PHANTOM_LANES + lane;
+			}
+		}
+	}
+	return found;
+}
+
+#endif /* PHANTOM_FLOAT_CROSSING_H */

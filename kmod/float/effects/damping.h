@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * damping.h - effect: normal damping, PHANTOM_EFFECT_DAMPING.
+ *
+ *   a = F . n                     what the contact gives along its normal, N
+ *   F += n (max(0, a - b v . n) - a)
+ *
+ * b in N per mm/s, v in mm/s. The surface pushes harder while the tip moves in, less while it
+ * moves out, and never pulls: the total along n does not fall below 0. An a that was negative
+ * before (no contact law gives one) is left as it is.
+ */
+#ifndef PHANTOM_FLOAT_DAMPING_H
+#define PHANTOM_FLOAT_DAMPING_H
+
+#include "../combine.h"
+
+static inline struct real3 damping_apply(struct real3 force, struct real3 normal, real damping,
+					 const s32 velocity_nm_s[3])
+{
+	struct real3 velocity = {velocity_nm_s[0] * MM_PER_NM, velocity_nm_s[1] * MM_PER_NM,
+				 velocity_nm_s[2] * MM_PER_NM};
+	real along = real3_dot(force, normal);
+	real damped = along - damping * real3_dot(velocity, normal);
+
+	if (along < 0)
+		return force;
+	return real3_add(force, real3_scale(normal, real_max(0, damped) - along));
+}
+
+#endif /* PHANTOM_FLOAT_DAMPING_H */

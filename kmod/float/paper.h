@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * paper.h - model `paper`: Kabelac 2001, Algorithm 1, for the patches of one step.
+ *
+ *   d = g . (P - x0)                                  skip unless 0 < d < R
+ *   for each edge e from x_i, with q = P - x_i:
+ *     t  = clamp(e . q / |e|^2, 0, 1)
+ *     n' = m_i + t (m_(i+1) - m_i)                    n_i = n' / |n'|
+ *     w' = n' x e / |e|                               w_i = w' / |w'|, points inward
+ *     d_i = w_i . (q - t e)                           skip if any d_i < 0
+ *   n  = n_0 d_1 d_2 + n_1 d_0 d_2 + n_2 d_0 d_1, normalised
+ *   c  = g . n, |DP| = d / c                          skip unless c > 0 and |DP| < R
+ *   s  = k (R - |DP|) n
+ *
+ * Departures from the print, each with its reason:
+ *  - n_i enters with d_i |n'| in place of d_i, which is the same direction without a division.
+ *  - The d_i are divided by their maximum first, and one below VANISHING of it is 0: no product
+ *    underflows. Where two vanish (the tip above a vertex) all three products would be 0; the
+ *    limit is that vertex's normal, taken by weighting with (d_i == 0).
+ *  - The tests d > 0 and d_i >= 0 give way by rounding_mm(): a tip on a plane or on a wall is in
+ *    contact with every patch that meets there. The combination never adds beyond max |s|.
+ *  - c > 0 is c > GRAZING: the VCP of a smaller c would lie anywhere in the plane.
+ */
+#ifndef PHANTOM_FLOAT_PAPER_H
+#define PHANTOM_FLOAT_PAPER_H
+
+#include "block.h"
+
+/* Relative to the largest wall distance; its square is still a normal float32. */
+#define VANISHING ((real)1e-18)
+
+/* Cosine between n and g. */
+#define GRAZING ((real)1e-4)
+
+/* Keeps a division by the length of a vector that may be zero finite. */
+#define TINY ((real)1e-30)
+
+struct paper_wall {
+	struct lanes3 normal; /* n' */
+	lanes distance; /* d_i |n'| */
+};
+
+LANES_INLINE struct paper_wall paper_wall(const struct paper_edge *edge, u32 step, struct lanes3 q)
+{
+	struct lanes3 along = row3_step(&edge->along, step);
+	lanes t = lanes3_dot(along, q) * edge->inverse_length2[step];
+	struct paper_wall out;
+	struct lanes3 wall;
+
+	t = lanes_min(lanes_max(t, lanes_all(0)), lanes_all(1));
+	out.normal = lanes3_add(row3_step(&edge->normal, step),
+				lanes3_scale(row3_step(&edge->normal_along, step), t));
+	wall = lanes3_add(row3_step(&edge->wall, step),
+			  lanes3_scale(row3_step(&edge->wall_along, step), t));
+	q = lanes3_sub(q, lanes3_scale(along, t));
+	out.distance = lanes3_dot(wall, q) * lanes_sqrt(lanes3_dot(out.normal, out.normal) /
+							(lanes3_dot(wall, wall) + lanes_all(TINY)));
+	return out;
+}
+
+/* n (not normalised) from the three walls; distances are not negative. */
+LANES_INLINE struct lanes3 paper_normal(const struct paper_wall wall[3])
+{
+	const lanes zero = lanes_all(0), one = lanes_all(1);
+	lanes most = lanes_max(lanes_max(wall[0].distance, wall[1].distance), wall[2].distance);
+	lanes scale = one / lanes_max(most, lanes_all(TINY));
+	lanes d[3], weight[3];
+	mask_lanes vanished;
+	struct lanes3 n;
+	u32 i;
+
+	for (i = 0; i < 3; i++) {
+		d[i] = wall[i].distance * scale;
+		d[i] = lanes_keep(d[i] >= VANISHING, d[i]);
+	}
+	weight[0] = d[1] * d[2];
+	weight[1] = d[0] * d[2];
+	weight[2] = d[0] * d[1];
+	vanished = (weight[0] == zero) & (weight[1] == zero) & (weight[2] == zero);
+	for (i = 0; i < 3; i++)
+		weight[i] = lanes_select(vanished, lanes_keep(d[i] == zero, one), weight[i]);
+	n = lanes3_scale(wall[0].normal, weight[0]);
+	n = lanes3_add(n, lanes3_scale(wall[1].normal, weight[1]));
+	return lanes3_add(n, lanes3_scale(wall[2].normal, weight[2]));
+}
+
+/* Lanes of a step within reach of the shell: a cheap test that rules out most of a set. */
+LANES_INLINE mask_lanes shell_candidates(const struct block *block, u32 step, struct lanes3 q,
+					 lanes height, real rounding)
+{
+	lanes radius = block->radius[step];
+
+	return (height > -rounding) & (height < radius) & within_reach(block, step, q, radius);
+}
+
+/*
+ * Fills `out` and returns true if any patch of the step is in contact. `out` is valid in the
+ * lanes of out->contact only.
+ */
+static inline bool paper_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
+				  real rounding, struct paper_step *out)
+{
+	struct lanes3 g = row3_step(&block->face_normal, step);
+	struct lanes3 q = from_corner(block, step, 0, tip);
+	lanes height = lanes3_dot(g, q);
+	lanes radius = block->radius[step];
+	mask_lanes contact = shell_candidates(block, step, q, height, rounding);
+	struct paper_wall wall[3];
+	struct lanes3 n;
+	lanes inverse, cosine;
+	u32 i;
+
+	if (!mask_bits(contact))
+		return false;
+	for (i = 0; i < 3; i++) {
+		if (i)
+			q = from_corner(block, step, i, tip);
+		wall[i] = paper_wall(&block->edge[i], step, q);
+		contact &= wall[i].distance >= -rounding;
+		wall[i].distance = lanes_max(wall[i].distance, lanes_all(0));
+	}
+	if (!mask_bits(contact))
+		return false;
+	n = paper_normal(wall);
+	inverse = lanes_all(1) / lanes_sqrt(lanes3_dot(n, n) + lanes_all(TINY * TINY));
+	n = lanes3_scale(n, inverse);
+	cosine = lanes3_dot(g, n);
+	contact &= cosine > GRAZING;
+	out->length = height / lanes_max(cosine, lanes_all(GRAZING));
+	contact &= out->length < radius;
+	if (!mask_bits(contact))
+		return false;
+	out->contact = contact;
+	out->normal = n;
+	out->magnitude = lanes_keep(contact, block->stiffness[step] * (radius - out->length));
+	out->height = height;
+	return true;
+}
+
+#endif /* PHANTOM_FLOAT_PAPER_H */

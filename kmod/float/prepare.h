@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * prepare.h - from validated patches (integers) to blocks: everything that can be computed once
+ * per set. Scalar float64 with exact integer cross products, so that a sliver's plane is as good
+ * as its nm coordinates allow, and the same bits in every unit.
+ */
+#ifndef PHANTOM_FLOAT_PREPARE_H
+#define PHANTOM_FLOAT_PREPARE_H
+
+#include "block.h"
+
+struct double3 {
+	double x, y, z;
+};
+
+/*
+ * A triangle lower than this has no plane to speak of: the nm grid of the border alone turns its
+ * normal by 5 degrees.
+ */
+#define SLIVER_HEIGHT_NM 16.0
+
+/* Least |N| that is reckoned with: h <= R / |N| (normals of a patch more than 160 degrees apart). */
+#define NORMAL_LENGTH_MIN 0.15
+
+LANES_INLINE struct double3 double3_sub(struct double3 a, struct double3 b)
+{
+	return (struct double3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+LANES_INLINE struct double3 double3_add(struct double3 a, struct double3 b)
+{
+	return (struct double3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+LANES_INLINE struct double3 double3_scale(struct double3 a, double s)
+{
+	return (struct double3){a.x * s, a.y * s, a.z * s};
+}
+
+LANES_INLINE double double3_dot(struct double3 a, struct double3 b)
+{
+	return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+LANES_INLINE struct double3 double3_cross(struct double3 a, struct double3 b)
+{
+	return (struct double3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+				a.x * b.y - a.y * b.x};
+}
+
+static inline void row_set(lanes *row, u32 lane, double value)
+{
+	row[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = (real)value;
+}
+
+static inline void row3_set(struct row3 *row, u32 lane, struct double3 value)
+{
+	row_set(row->x, lane, value.x);
+	row_set(row->y, lane, value.y);
+	row_set(row->z, lane, value.z);
+}
+
+/* A patch in float64, mm. */
+struct patch_geometry {
+	struct double3 normal[3]; /* m */
+	struct double3 edge[3]; /* e_i = x_(i+1) - x_i */
+	double length2[3]; /* |e_i|^2 */
+	struct double3 face_normal; /* g */
+	double area2; /* |A0| = twice the area, mm^2 */
+};
+
+static inline struct double3 edge_nm(const struct phantom_patch *patch, u32 from, u32 to)
+{
+	const s32 *a = patch->vertex_nm[from], *b = patch->vertex_nm[to];
+
+	return (struct double3){(double)((s64)b[0] - a[0]), (double)((s64)b[1] - a[1]),
+				(double)((s64)b[2] - a[2])};
+}
+
+/* (x1 - x0) x (x2 - x0) in nm^2. Exact in integers: differences are below 2^31 for +-1 m. */
+static inline struct double3 cross_nm2(const struct phantom_patch *patch)
+{
+	const s32 *x0 = patch->vertex_nm[0], *x1 = patch->vertex_nm[1], *x2 = patch->vertex_nm[2];
+	s64 a[3], b[3];
+	u32 axis;
+
+	for (axis = 0; axis < 3; axis++) {
+		a[axis] = (s64)x1[axis] - x0[axis];
+		b[axis] = (s64)x2[axis] - x0[axis];
+	}
+	return (struct double3){(double)(a[1] * b[2] - a[2] * b[1]),
+				(double)(a[2] * b[0] - a[0] * b[2]),
+				(double)(a[0] * b[1] - a[1] * b[0])};
+}
+
+/* False where the patch has no trustworthy plane. */
+static inline bool patch_measure(const struct phantom_patch *patch, struct patch_geometry *out)
+{
+	struct double3 cross = cross_nm2(patch);
+	double area2_nm2 = double_sqrt(double3_dot(cross, cross));
+	double longest2_nm2 = 0;
+	u32 i;
+
+	for (i = 0; i < 3; i++) {
+		const s32 *m = patch->normal_q30[i];
+		struct double3 edge = edge_nm(patch, i, (i + 1) % 3);
+		double length2 = double3_dot(edge, edge);
+
+		if (length2 > longest2_nm2)
+			longest2_nm2 = length2;
+		out->edge[i] = double3_scale(edge, 1e-6);
+		out->length2[i] = length2 * 1e-12;
+		out->normal[i] = (struct double3){m[0] * (1.0 / PHANTOM_Q30_ONE),
+						  m[1] * (1.0 / PHANTOM_Q30_ONE),
+						  m[2] * (1.0 / PHANTOM_Q30_ONE)};
+	}
+	/* height over the longest edge = area2 / that edge */
+	if (area2_nm2 * area2_nm2 < SLIVER_HEIGHT_NM * SLIVER_HEIGHT_NM * longest2_nm2 ||
+	    !(area2_nm2 > 0))
+		return false;
+	out->area2 = area2_nm2 * 1e-12;
+	out->face_normal = double3_scale(cross, 1 / area2_nm2);
+	return true;
+}
+
+static inline void prepare_edges(struct block *block, u32 lane, const struct patch_geometry *p)
+{
+	u32 i;
+
+	for (i = 0; i < 3; i++) {
+		struct paper_edge *edge = &block->edge[i];
+		struct double3 along = double3_sub(p->normal[(i + 1) % 3], p->normal[i]);
+		double inverse_length = 1 / double_sqrt(p->length2[i]);
+
+		row3_set(&edge->along, lane, p->edge[i]);
+		row_set(edge->inverse_length2, lane, 1 / p->length2[i]);
+		row3_set(&edge->normal, lane, p->normal[i]);
+		row3_set(&edge->normal_along, lane, along);
+		row3_set(&edge->wall, lane,
+			 double3_scale(double3_cross(p->normal[i], p->edge[i]), inverse_length));
+		row3_set(&edge->wall_along, lane,
+			 double3_scale(double3_cross(along, p->edge[i]), inverse_length));
+	}
+}
+
+/* A lower bound of |N| over the patch: N . u >= min m_i . u, with u along m0 + m1 + m2. */
+static inline double normal_length_min(const struct patch_geometry *p)
+{
+	struct double3 sum = double3_add(double3_add(p->normal[0], p->normal[1]), p->normal[2]);
+	double length = double_sqrt(double3_dot(sum, sum));
+	double least = 1;
+	u32 i;
+
+	for (i = 0; i < 3; i++) {
+		double along = double3_dot(p->normal[i], sum);
+
+		if (along < least * length)
+			least = length > 0 ? along / length : 0;
+	}
+	return least > NORMAL_LENGTH_MIN ? least : NORMAL_LENGTH_MIN;
+}
+
+static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p,
+				 double radius)
+{
+	struct double3 e1 = p->edge[0], e2 = double3_scale(p->edge[2], -1);
+	struct double3 f1 = double3_sub(p->normal[1], p->normal[0]);
+	struct double3 f2 = double3_sub(p->normal[2], p->normal[0]);
+	double scale = 1 / p->area2;
+	struct double3 area1 =
+		double3_scale(double3_add(double3_cross(e1, f2), double3_cross(f1, e2)), scale);
+	struct double3 area2 = double3_scale(double3_cross(f1, f2), scale);
+
+	row_set(block->area, lane, p->area2);
+	row3_set(&block->area1, lane, area1);
+	row3_set(&block->area2, lane, area2);
+	row_set(block->normal_area0, lane, double3_dot(p->normal[0], p->face_normal));
+	row_set(block->normal_area1, lane, double3_dot(p->normal[0], area1));
+	row_set(block->normal_area2, lane, double3_dot(p->normal[0], area2));
+	row_set(block->height_limit, lane, radius / normal_length_min(p));
+}
+
+static inline void prepare_patch(struct phantom_float_set *set, u32 index,
+				 const struct phantom_patch *patch, const struct patch_geometry *p)
+{
+	struct block *block = &set->blocks[index / PHANTOM_BLOCK];
+	const struct float_material *material = &set->materials[patch->material];
+	u32 lane = index % PHANTOM_BLOCK;
+	/* x1 - x0 and x2 - x0 as seen from the centroid */
+	struct double3 e1 = p->edge[0], e2 = double3_scale(p->edge[2], -1);
+	struct double3 centre = double3_scale(double3_add(e1, e2), 1.0 / 3);
+	struct double3 away[3] = {centre, double3_sub(e1, centre), double3_sub(e2, centre)};
+	double extent2 = 0, extent;
+	u32 i, axis;
+
+	for (i = 0; i < 3; i++) {
+		double away2 = double3_dot(away[i], away[i]);
+
+		if (away2 > extent2)
+			extent2 = away2;
+		for (axis = 0; axis < 3; axis++)
+			block->corner[i][axis][lane / PHANTOM_LANES][lane % PHANTOM_LANES] =
+				(coordinate)patch->vertex_nm[i][axis];
+	}
+	/* a little larger, so that rounding in the tick never rules out a patch in reach */
+	extent = double_sqrt(extent2) * (1 + 1e-5) + 1e-5;
+	if (extent > set->extent)
+		set->extent = (real)extent;
+	row3_set(&block->face_normal, lane, p->face_normal);
+	row_set(block->radius, lane, material->radius);
+	row3_set(&block->centre, lane, centre);
+	row_set(block->extent, lane, extent);
+	row_set(block->stiffness, lane, material->stiffness);
+	prepare_edges(block, lane, p);
+	prepare_shell(block, lane, p, material->radius);
+}
+
+/* A lane that can never be in contact. */
+static inline void prepare_idle(struct block *block, u32 lane)
+{
+	const struct double3 zero = {0, 0, 0};
+	struct patch_geometry p = {.area2 = 1};
+	u32 i, axis;
+
+	for (i = 0; i < 3; i++) {
+		p.edge[i] = p.normal[i] = zero;
+		p.length2[i] = 1;
+		for (axis = 0; axis < 3; axis++)
+			block->corner[i][axis][lane / PHANTOM_LANES][lane % PHANTOM_LANES] = 0;
+	}
+	p.face_normal = zero;
+	row3_set(&block->face_normal, lane, zero);
+	row_set(block->radius, lane, -1);
+	row3_set(&block->centre, lane, zero);
+	row_set(block->extent, lane, -1e6);
+	row_set(block->stiffness, lane, 0);
+	prepare_edges(block, lane, &p);
+	prepare_shell(block, lane, &p, -1);
+}
+
+static inline void prepare_header(const struct phantom_float_prepare *prepare)
+{
+	struct phantom_float_set *set = prepare->set;
+	u32 i;
+
+	set->patch_count = prepare->patch_count;
+	set->block_count = (prepare->patch_count + PHANTOM_BLOCK - 1) / PHANTOM_BLOCK;
+	set->material_count = prepare->material_count;
+	set->scratch_offset = sizeof(*set) + (u64)set->block_count * sizeof(struct block);
+	set->extent = 0;
+	set->radius = 0;
+	for (i = 0; i < prepare->material_count; i++) {
+		const struct phantom_material *in = &prepare->materials[i];
+		struct float_material *material = &set->materials[i];
+		bool damped = in->effects & PHANTOM_EFFECT_DAMPING;
+
+		material->stiffness = (real)(in->stiffness_mn_mm * 1e-3);
+		material->radius = (real)(in->radius_nm * 1e-6);
+		/* mN s/m = 1e-6 N per mm/s */
+		material->damping = damped ? (real)(in->damping_mns_m * 1e-6) : 0;
+		set->radius = real_max(set->radius, material->radius);
+	}
+}
+
+static void section_prepare(struct phantom_float_prepare *prepare)
+{
+	struct phantom_float_set *set = prepare->set;
+	u32 index, end = prepare->first + prepare->count, i;
+
+	if (prepare->first == 0)
+		prepare_header(prepare);
+	for (index = prepare->first; index < end; index++) {
+		const struct phantom_patch *patch = &prepare->patches[index];
+		struct block *block = &set->blocks[index / PHANTOM_BLOCK];
+		u32 lane = index % PHANTOM_BLOCK;
+		struct patch_geometry geometry;
+
+		block->face[lane] = patch->face;
+		block->material[lane] = patch->material;
+		for (i = 0; i < 3; i++)
+			block->vertex[i][lane] = patch->vertex[i];
+		if (patch_measure(patch, &geometry)) {
+			prepare_patch(set, index, patch, &geometry);
+		} else {
+			prepare_idle(block, lane);
+			prepare->refused++;
+		}
+	}
+	for (; end == prepare->patch_count && index % PHANTOM_BLOCK; index++) {
+		struct block *block = &set->blocks[index / PHANTOM_BLOCK];
+		u32 lane = index % PHANTOM_BLOCK;
+
+		prepare_idle(block, lane);
+		block->face[lane] = PHANTOM_PATCH_NONE;
+		block->material[lane] = 0;
+		for (i = 0; i < 3; i++)
+			block->vertex[i][lane] = PHANTOM_PATCH_NONE;
+	}
+}
+
+static size_t section_set_bytes(u32 patch_count)
+{
+	size_t blocks = ((size_t)patch_count + PHANTOM_BLOCK - 1) / PHANTOM_BLOCK;
+	size_t bytes = sizeof(struct phantom_float_set) + blocks * sizeof(struct block) +
+		       blocks * sizeof(union scratch);
+
+	return (bytes + PHANTOM_FLOAT_SET_ALIGN - 1) & ~(size_t)(PHANTOM_FLOAT_SET_ALIGN - 1);
+}
+
+#endif /* PHANTOM_FLOAT_PREPARE_H */

@@ -1,0 +1,431 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * projected.h - model `projected`: the tip in the shell over a triangle.
+ *
+ * Between a triangle and its offset by h along the vertex normals lies a shell; each of its
+ * points is P = sum b_i (x_i + h m_i). Neighbours share an edge and its two normals, hence the
+ * wall of their shells, so the shells of a mesh leave no gap and N = sum b_i m_i is continuous.
+ * With e1 = x1 - x0, e2 = x2 - x0, f1 = m1 - m0, f2 = m2 - m0, q = P - x0:
+ *
+ *   A(h) = (e1 + h f1) x (e2 + h f2) = A0 + h A1 + h^2 A2
+ *   c(h) = (q - h m0) . A(h) = 0
+ *   c0 = q.A0   c1 = q.A1 - m0.A0   c2 = q.A2 - m0.A1   c3 = -m0.A2      (all divided by |A0|)
+ *
+ * A root counts if all b_i >= 0 and 0 < h|N| < R; n = N / |N|, sign s = sign(A.N) = -sign(c'):
+ * +1, or -1 where the shell has folded over (concave, R beyond the radius of curvature). Roots
+ * come and go in pairs of either sign with the same h and n, or at h|N| = R where the force is 0,
+ * so the signed sum is continuous:
+ *
+ *   S = sum s k (R - h|N|) n        F = S min(1, kR / |S|)
+ *
+ * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than MONOTONE_RATIO
+ * fold (its Bernstein coefficients say so), there is one root or none, and Newton from -c0/c1
+ * finds it in model.newton_steps steps: the accuracy knob. Elsewhere the interval is split at the
+ * critical points and each part that changes sign is solved by Newton kept in its bracket.
+ *
+ * Walls are soft. Rounding would let a tip on a common wall count twice or not at all, so a root
+ * has the weight clamp((w_i + e) / 2e, 0, 1) for each wall, w_i the distance from the wall,
+ *
+ *   w_i = b_i |A.N| / |N x E_i|,    E_i the offset edge
+ *
+ * which is the same distance from both sides: the two weights add up to 1, and they cancel where
+ * one of the two has folded over. e is a few rounding errors (nm). Where more than two patches
+ * meet, on the line of a vertex normal, the weights add up to something else; they are divided
+ * by their sum over the roots of one sign and height that share the vertex.
+ */
+#ifndef PHANTOM_FLOAT_PROJECTED_H
+#define PHANTOM_FLOAT_PROJECTED_H
+
+#include "paper.h"
+#include "combine.h"
+
+#define MONOTONE_RATIO ((real)4)
+
+/* Half the width of a soft wall, in units of rounding_mm(). */
+#define SOFT_WALL ((real)4)
+
+/* Roots of one sheet at a vertex differ in height by less than that, in units of rounding_mm(). */
+#define SAME_SHEET ((real)256)
+
+/* Bisection alone needs that many steps for float32's 24 bits; float64 ends as near as Newton gets. */
+#define BRACKET_STEPS 32
+
+/* Roots among which the weights at a vertex are divided; bounds the pairs that are looked at. */
+#define SHEET_ROOTS_MAX 64
+
+struct cubic {
+	lanes c0, c1, c2, c3;
+};
+
+struct real_cubic {
+	real c0, c1, c2, c3;
+};
+
+/* Roots of the patches of a step: h and sign by [root][lane]; a patch has `count` of them. */
+struct step_roots {
+	lanes h[PROJECTED_ROOTS], sign[PROJECTED_ROOTS];
+	mask_lanes valid[PROJECTED_ROOTS];
+};
+
+/* Where a root lies in its shell. */
+struct shell_point {
+	mask_lanes accepted;
+	struct lanes3 normal; /* n */
+	lanes height, magnitude, weight, soft_walls;
+};
+
+LANES_INLINE lanes cubic_at(const struct cubic *c, lanes h)
+{
+	return ((c->c3 * h + c->c2) * h + c->c1) * h + c->c0;
+}
+
+LANES_INLINE lanes cubic_slope(const struct cubic *c, lanes h)
+{
+	return (3 * c->c3 * h + 2 * c->c2) * h + c->c1;
+}
+
+static inline real real_cubic_at(const struct real_cubic *c, real h)
+{
+	return ((c->c3 * h + c->c2) * h + c->c1) * h + c->c0;
+}
+
+/* The root in [low, high]; the cubic is negative at one end only and monotone between. */
+static inline real bracket_solve(const struct real_cubic *c, real low, real high, bool falling)
+{
+	real h = (low + high) / 2;
+	u32 i;
+
+	for (i = 0; i < BRACKET_STEPS; i++) {
+		real value = real_cubic_at(c, h);
+		real slope = (3 * c->c3 * h + 2 * c->c2) * h + c->c1;
+		real next;
+
+		if ((value < 0) == falling)
+			high = h;
+		else
+			low = h;
+		next = h - value / slope;
+		/* written so that a step which is no number is refused as well */
+		if (!(next > low && next < high))
+			next = (low + high) / 2;
+		if (next == h)
+			break;
+		h = next;
+	}
+	return h;
+}
+
+/* Critical points of the cubic inside (low, high), ascending; returns how many. */
+static inline u32 critical_points(const struct real_cubic *c, real low, real high, real out[2])
+{
+	real discriminant = c->c2 * c->c2 - 3 * c->c1 * c->c3;
+	real both, first, second;
+	u32 count = 0;
+
+	if (!(discriminant > 0))
+		return 0;
+	/* the stable form: no difference of nearly equal numbers */
+	both = c->c2 < 0 ? -c->c2 + real_sqrt(discriminant) : -c->c2 - real_sqrt(discriminant);
+	first = both / (3 * c->c3);
+	second = c->c1 / both;
+	if (second < first) {
+		real swap = first;
+
+		first = second;
+		second = swap;
+	}
+	if (first > low && first < high)
+		out[count++] = first;
+	if (second > low && second < high)
+		out[count++] = second;
+	return count;
+}
+
+/* All roots of one lane in [low, high], by splitting at the critical points. */
+LANES_NOINLINE void split_roots(const struct real_cubic *c, real low, real high, u32 lane,
+				struct step_roots *roots)
+{
+	real ends[4], points[2];
+	u32 parts = 0, count = critical_points(c, low, high, points), found = 0, i;
+
+	ends[parts++] = low;
+	for (i = 0; i < count; i++)
+		ends[parts++] = points[i];
+	ends[parts] = high;
+	for (i = 0; i < parts; i++) {
+		bool negative = real_cubic_at(c, ends[i]) < 0;
+
+		if (negative == (real_cubic_at(c, ends[i + 1]) < 0))
+			continue;
+		roots->h[found][lane] = bracket_solve(c, ends[i], ends[i + 1], !negative);
+		roots->sign[found][lane] = negative ? -1 : 1;
+		roots->valid[found][lane] = -1;
+		found++;
+	}
+}
+
+/* The cubics of a step. */
+LANES_INLINE struct cubic shell_cubic(const struct block *block, u32 step, struct lanes3 q,
+				      lanes height)
+{
+	struct cubic c;
+
+	c.c0 = height;
+	c.c1 = lanes3_dot(q, row3_step(&block->area1, step)) - block->normal_area0[step];
+	c.c2 = lanes3_dot(q, row3_step(&block->area2, step)) - block->normal_area1[step];
+	c.c3 = -block->normal_area2[step];
+	return c;
+}
+
+/* Roots in [-rounding, H] of the candidate lanes. Returns the number of rounds in `roots`. */
+static inline u32 find_roots(const struct block *block, u32 step, const struct cubic *c,
+			     mask_lanes candidates, real rounding, u32 newton_steps,
+			     struct step_roots *roots)
+{
+	const lanes low = lanes_all(-rounding), zero = lanes_all(0);
+	lanes high = block->height_limit[step];
+	/* Bernstein coefficients of c' on [0, H] */
+	lanes first = c->c1, middle = c->c1 + c->c2 * high, last = cubic_slope(c, high);
+	lanes least = lanes_min(lanes_min(first, middle), last);
+	lanes most = lanes_max(lanes_max(first, middle), last);
+	mask_lanes falling = (most < zero) & (least >= MONOTONE_RATIO * most);
+	mask_lanes rising = (least > zero) & (most <= MONOTONE_RATIO * least);
+	mask_lanes usual = candidates & (falling | rising);
+	u32 split = mask_bits(candidates & ~usual), l, i, rounds = 1;
+	lanes h;
+
+	h = lanes_min(lanes_max(-c->c0 / lanes_select(usual, c->c1, lanes_all(1)), low), high);
+	for (i = 0; i < newton_steps; i++) {
+		lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(1));
+
+		h = lanes_min(lanes_max(h - cubic_at(c, h) / slope, low), high);
+	}
+	roots->h[0] = h;
+	roots->sign[0] = lanes_select(falling, lanes_all(1), lanes_all(-1));
+	roots->valid[0] = usual & ((cubic_at(c, low) < zero) ^ (cubic_at(c, high) < zero));
+	if (!split)
+		return rounds;
+	for (i = 1; i < PROJECTED_ROOTS; i++) {
+		roots->h[i] = roots->sign[i] = zero;
+		roots->valid[i] = (mask_lanes){};
+	}
+	for (l = 0; l < PHANTOM_LANES; l++) {
+		struct real_cubic one = {c->c0[l], c->c1[l], c->c2[l], c->c3[l]};
+
+		if (split >> l & 1)
+			split_roots(&one, -rounding, high[l], l, roots);
+	}
+	while (rounds < PROJECTED_ROOTS && mask_bits(roots->valid[rounds]))
+		rounds++;
+	return rounds;
+}
+
+/* clamp((w + e) / 2e, 0, 1) for a wall: `area` is b_i |A.N|. Counts walls that are soft. */
+LANES_INLINE lanes soft_wall(lanes area, struct lanes3 normal, struct lanes3 edge, real soft,
+			     lanes *soft_walls)
+{
+	struct lanes3 across = lanes3_cross(normal, edge);
+	lanes distance = area / lanes_sqrt(lanes3_dot(across, across) + lanes_all(TINY));
+	lanes weight = (distance + soft) * ((real)0.5 / soft);
+
+	weight = lanes_min(lanes_max(weight, lanes_all(0)), lanes_all(1));
+	*soft_walls += lanes_keep((weight > 0) & (weight < 1), lanes_all(1));
+	return weight;
+}
+
+/* Is the root in the shell, and what does it give? */
+LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct lanes3 q, lanes h,
+				   mask_lanes valid, real rounding, struct shell_point *out)
+{
+	const lanes one = lanes_all(1);
+	const real soft = SOFT_WALL * rounding;
+	struct lanes3 m0 = row3_step(&block->edge[0].normal, step);
+	struct lanes3 f1 = row3_step(&block->edge[0].normal_along, step);
+	struct lanes3 f2 = row3_step(&block->edge[2].normal_along, step); /* m0 - m2 = -f2 */
+	/* the offset edges E1, -E2, and w = P - X0 */
+	struct lanes3 e1 = lanes3_add(row3_step(&block->edge[0].along, step), lanes3_scale(f1, h));
+	struct lanes3 e2 = lanes3_add(row3_step(&block->edge[2].along, step), lanes3_scale(f2, h));
+	struct lanes3 w = lanes3_sub(q, lanes3_scale(m0, h));
+	/* A(h) / |A0| */
+	struct lanes3 area =
+		lanes3_add(row3_step(&block->face_normal, step),
+			   lanes3_scale(lanes3_add(row3_step(&block->area1, step),
+						   lanes3_scale(row3_step(&block->area2, step), h)),
+					h));
+	lanes size = block->area[step] * lanes3_dot(area, area);
+	lanes inverse, b0, b1, b2, turned, reach, length, radius = block->radius[step];
+	struct lanes3 n;
+	mask_lanes near_wall;
+
+	valid &= size > 0;
+	inverse = one / lanes_select(valid, size, one);
+	b1 = lanes3_dot(lanes3_cross(e2, w), area) * inverse;
+	b2 = lanes3_dot(lanes3_cross(e1, w), area) * inverse;
+	b0 = one - b1 - b2;
+	n = lanes3_sub(lanes3_add(m0, lanes3_scale(f1, b1)), lanes3_scale(f2, b2));
+	turned = lanes_abs(lanes3_dot(area, n)) * block->area[step];
+	/* |N x E_i| is at most the length of an offset edge */
+	reach = (2 * soft) * (block->extent[step] + h + soft);
+	b0 *= turned;
+	b1 *= turned;
+	b2 *= turned;
+	valid &= (b0 >= -reach) & (b1 >= -reach) & (b2 >= -reach);
+	length = lanes_sqrt(lanes3_dot(n, n));
+	valid &= (length > 0) & (h * length < radius) & (h * length > -rounding);
+	out->accepted = valid;
+	if (!mask_bits(valid))
+		return;
+	out->height = h * length;
+	out->normal = lanes3_scale(n, one / lanes_select(valid, length, one));
+	out->magnitude = block->stiffness[step] * (radius - out->height);
+	out->weight = one;
+	out->soft_walls = lanes_all(0);
+	near_wall = valid & ((b0 <= reach) | (b1 <= reach) | (b2 <= reach));
+	if (!mask_bits(near_wall))
+		return;
+	out->weight = soft_wall(b2, n, e1, soft, &out->soft_walls) *
+		      soft_wall(b1, n, e2, soft, &out->soft_walls) *
+		      soft_wall(b0, n, lanes3_add(e1, e2), soft, &out->soft_walls);
+	out->accepted = valid & (out->weight > 0);
+}
+
+/* Appends the roots of a step to `list`, patch by patch; returns how many. */
+static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
+				 real rounding, u32 newton_steps, u32 first_patch,
+				 struct projected_root *list)
+{
+	struct lanes3 q = from_corner(block, step, 0, tip);
+	lanes height = lanes3_dot(row3_step(&block->face_normal, step), q);
+	lanes radius = block->radius[step];
+	mask_lanes candidates = (lanes_abs(height) < radius) & within_reach(block, step, q, radius);
+	struct shell_point point[PROJECTED_ROOTS];
+	struct step_roots roots;
+	struct cubic c;
+	u32 rounds, any = 0, count = 0, l, i;
+
+	if (!mask_bits(candidates))
+		return 0;
+	c = shell_cubic(block, step, q, height);
+	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
+	for (i = 0; i < rounds; i++) {
+		shell_evaluate(block, step, q, roots.h[i], roots.valid[i], rounding, &point[i]);
+		any |= mask_bits(point[i].accepted);
+	}
+	for (l = 0; any >> l; l++) {
+		for (i = 0; i < rounds; i++) {
+			if (!point[i].accepted[l])
+				continue;
+			list[count].normal = lanes3_lane(point[i].normal, l);
+			list[count].height = point[i].height[l];
+			list[count].magnitude = point[i].magnitude[l];
+			list[count].weight = point[i].weight[l];
+			list[count].sign = roots.sign[i][l];
+			list[count].soft_walls = (u32)(s32)point[i].soft_walls[l];
+			list[count].patch = first_patch + l;
+			count++;
+		}
+	}
+	return count;
+}
+
+static inline bool shares_vertex(const struct phantom_float_set *set, u32 a, u32 b)
+{
+	const struct block *block_a = &set->blocks[a / PHANTOM_BLOCK];
+	const struct block *block_b = &set->blocks[b / PHANTOM_BLOCK];
+	u32 i, j;
+
+	for (i = 0; i < 3; i++)
+		for (j = 0; j < 3; j++)
+			if (block_a->vertex[i][a % PHANTOM_BLOCK] ==
+			    block_b->vertex[j][b % PHANTOM_BLOCK])
+				return true;
+	return false;
+}
+
+/* Divides the weights where more than two patches meet, so that one sheet weighs 1. */
+static inline void divide_weights(const struct phantom_float_set *set, struct projected_root *roots,
+				  u32 count)
+{
+	real weight[SHEET_ROOTS_MAX], same = SAME_SHEET * rounding_mm(set);
+	u32 i, j;
+
+	if (count > SHEET_ROOTS_MAX)
+		count = SHEET_ROOTS_MAX;
+	for (i = 0; i < count; i++) {
+		real sum = 0;
+		bool vertex = false;
+
+		for (j = 0; j < count; j++) {
+			if (roots[i].sign != roots[j].sign ||
+			    real_abs(roots[i].height - roots[j].height) > same ||
+			    !shares_vertex(set, roots[i].patch, roots[j].patch))
+				continue;
+			sum += roots[j].weight;
+			vertex |= roots[j].soft_walls > 1;
+		}
+		weight[i] = roots[i].weight / (vertex ? sum : real_max(sum, 1));
+	}
+	for (i = 0; i < count; i++)
+		roots[i].weight = weight[i];
+}
+
+/* S and F from the list of roots, in its order. */
+static inline void projected_sum(const struct phantom_float_set *set,
+				 const struct projected_root *roots, u32 count,
+				 struct contact_force *out)
+{
+	struct real3 sum = {0, 0, 0};
+	real bound = 0, forces = 0, damping = 0, length;
+	u32 i;
+
+	for (i = 0; i < count; i++) {
+		const struct projected_root *root = &roots[i];
+		const struct block *block = &set->blocks[root->patch / PHANTOM_BLOCK];
+		const struct float_material *material =
+			&set->materials[block->material[root->patch % PHANTOM_BLOCK]];
+		real magnitude = root->weight * root->magnitude;
+
+		sum = real3_add(sum, real3_scale(root->normal, root->sign * magnitude));
+		bound = real_max(bound, material->stiffness * material->radius);
+		forces += magnitude;
+		damping += magnitude * material->damping;
+		if (root->sign < 0) {
+			out->folded++;
+		} else if (root->height < out->deepest) {
+			out->deepest = root->height;
+			out->deepest_patch = root->patch;
+		}
+	}
+	length = real3_length(sum);
+	out->force = length > bound ? real3_scale(sum, bound / length) : sum;
+	if (forces > 0)
+		out->damping = damping / forces;
+}
+
+static inline void contact_projected(const struct phantom_float_job *job, struct contact_force *out)
+{
+	const struct phantom_float_set *set = job->set;
+	struct projected_root *roots = scratch_projected(set);
+	struct nm_point tip = nm_point(job->tip_nm);
+	real rounding = rounding_mm(set);
+	u32 steps = job->model.newton_steps, soft = 0, count = 0, block, step, i;
+
+	if (steps > PHANTOM_NEWTON_STEPS_MAX)
+		steps = PHANTOM_NEWTON_STEPS_MAX;
+	for (block = 0; block < set->block_count; block++)
+		for (step = 0; step < PHANTOM_STEPS; step++)
+			count += projected_step(&set->blocks[block], step, &tip, rounding, steps,
+						block * PHANTOM_BLOCK + step * PHANTOM_LANES,
+						&roots[count]);
+	if (!count)
+		return;
+	for (i = 0; i < count; i++)
+		soft |= roots[i].soft_walls;
+	if (soft)
+		divide_weights(set, roots, count);
+	projected_sum(set, roots, count, out);
+	out->contacts = count;
+	contact_direction(out);
+}
+
+#endif /* PHANTOM_FLOAT_PROJECTED_H */
