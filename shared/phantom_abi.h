@@ -107,7 +107,11 @@
 #define PHANTOM_RATE_MAX_HZ 10000
 #define PHANTOM_NEWTON_STEPS_MAX 3
 #define PHANTOM_COORDINATE_MAX_NM 1000000000 /* +-1 m round a set's origin */
+#define PHANTOM_POSITION_MAX_NM 1000000000000000000LL /* absolute positions: +-1e9 m */
+#define PHANTOM_RAMP_MAX_MS 10000
 #define PHANTOM_FADE_NS 20000000 /* force fades to zero, or to another set, in 20 ms */
+#define PHANTOM_MEMORY_NS 100000000 /* an uncovered tip keeps `inside` and proxy this long */
+#define PHANTOM_REMIND_NS 4000000 /* while a set is needed, POLLPRI comes again this often */
 
 /* ---- unit vectors -------------------------------------------------------- */
 #define PHANTOM_Q30_ONE (1 << 30)

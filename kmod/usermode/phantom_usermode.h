@@ -69,9 +69,14 @@ struct phantom_um_thread_info {
 };
 void phantom_um_thread(const struct phantom_um *machine, struct phantom_um_thread_info *info);
 
-/* Tests only: delay the next tick of a REAL machine, or make the device fail. */
+/*
+ * Tests only. The next tick comes that much later (either clock). The device answers every read with
+ * that -errno until told 0; -ENODEV is an unplugged one. The nth allocation from now on in the calling thread
+ * fails, once; 0 = none.
+ */
 void phantom_um_inject_stall(struct phantom_um *machine, uint64_t ns);
 void phantom_um_inject_device_error(struct phantom_um *machine, int error);
+void phantom_um_inject_allocation_failure(uint32_t nth);
 
 #ifdef __cplusplus
 }

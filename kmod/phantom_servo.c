@@ -1,0 +1,422 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * phantom_servo.c - the tick, and the only place that opens float sections.
+ *
+ * ONE TICK, at an absolute deadline
+ *
+ *     take the waiting set, the model, a wish to stop or to clear a fault
+ *     tip      <- device                      an error is a fault
+ *     velocity <- low pass of tip             too fast is a fault
+ *     covered  <- integers: does the set promise all that contact needs here?
+ *     target   <- covered and fresh: float section (contact, proxy, effects); else 0
+ *     target   <- blend, where covered, fresh, model or revision changed
+ *     force    <- safety: clamp, ramp, slew; any fault: 0
+ *     device   <- force                       an error is a fault
+ *     record, status page, wake-ups
+ *
+ * LOSS OF COVERAGE. Contact is evaluated only where the promise of the set reaches. While it does not,
+ * the state (inside, proxy, tip of the last evaluation) is kept for PHANTOM_MEMORY_NS: when coverage
+ * comes back in time, the path from that last tip to the present one is searched for a crossing of the surface, so a
+ * tip that went through meanwhile is found inside and not let fall. After that the state is dropped, inside = 0:
+ * better no force than a full one at a depth nobody felt coming. A fast tip may start its path
+ * outside the new set's coverage; a crossing that the set does know is a crossing all the same.
+ *
+ * FLOAT SECTIONS run with preemption off: no sleeping lock, no allocation, no copy from user, no
+ * print between begin and end, and nothing but float/ is called there.
+ */
+#include <phantom_platform.h>
+#include "phantom_servo.h"
+
+/* Readers of records are woken at most this often: at 10 kHz ten records cost one wake-up. */
+#define PHANTOM_WAKE_NS 1000000
+
+static u64 phantom_servo_now(const struct phantom_servo *servo)
+{
+	return servo->clock->ops->now_ns(servo->clock);
+}
+
+/* ---- float sections -------------------------------------------------------------------------------- */
+
+/* Servo thread. */
+static void phantom_servo_float_tick(struct phantom_servo *servo,
+				     const struct phantom_float_ops *ops)
+{
+	struct phantom_stats *stats = &servo->stats;
+	u64 begin, length;
+
+	begin = phantom_servo_now(servo);
+	kernel_fpu_begin();
+	ops->tick(&servo->job);
+	kernel_fpu_end();
+	length = phantom_servo_now(servo) - begin;
+	phantom_stats_count(&stats->page->section, length);
+	stats->next.sections++;
+	stats->next.section_max_ns =
+		max_t(u64, stats->next.section_max_ns, min_t(u64, length, U32_MAX));
+}
+
+void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot)
+{
+	const struct phantom_set_copy *copy = &servo->sets.copy;
+	struct phantom_float_prepare prepare = {
+		.set = slot->floats,
+		.patches = copy->patches,
+		.materials = copy->materials,
+		.patch_count = slot->patch_count,
+		.material_count = copy->header.material_count,
+	};
+
+	do {
+		u64 begin = phantom_servo_now(servo);
+		u64 length;
+
+		prepare.count =
+			min_t(u32, slot->patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);
+		kernel_fpu_begin();
+		slot->ops->prepare(&prepare);
+		kernel_fpu_end();
+		length = min_t(u64, phantom_servo_now(servo) - begin, U32_MAX);
+		WRITE_ONCE(servo->prepare_sections, servo->prepare_sections + 1);
+		if (length > servo->prepare_max_ns)
+			WRITE_ONCE(servo->prepare_max_ns, (u32)length);
+		prepare.first += prepare.count;
+	} while (prepare.first < slot->patch_count);
+	slot->refused = prepare.refused;
+}
+
+/* ---- contact ------------------------------------------------------------------------------------------ */
+
+void phantom_servo_forget_touch(struct phantom_servo *servo)
+{
+	memset(&servo->touch, 0, sizeof(servo->touch));
+	servo->touch.proxy_face = PHANTOM_PATCH_NONE;
+}
+
+static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	struct phantom_slot *before = servo->active;
+	struct phantom_slot *slot = phantom_set_take(&servo->sets);
+	struct phantom_status *next = &servo->stats.next;
+
+	if (!slot)
+		return;
+	if (before) {
+		/* a scene that became empty here, or another shape, is no mere swap */
+		if (phantom_set_revised(before, slot) ||
+		    (before->patch_count && !slot->patch_count))
+			pass->blend = true;
+		phantom_set_release(before);
+	}
+	servo->active = slot;
+	servo->warned = false;
+	next->set_time_ns = pass->now_ns;
+	next->isa = slot->ops->isa;
+	next->set_id = slot->id;
+	next->set_patches = slot->patch_count;
+	next->set_level = slot->level;
+	next->set_level_error_nm = slot->level_error_nm;
+	next->sets++;
+	next->refused += slot->refused;
+}
+
+static void phantom_servo_take_model(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	u64 model = READ_ONCE(servo->model);
+
+	if (model == servo->active_model)
+		return;
+	servo->active_model = model;
+	phantom_model_unpack(model, &servo->job.model);
+	servo->stats.next.model = servo->job.model;
+	pass->blend = true;
+	if (servo->job.model.model == PHANTOM_MODEL_OFF ||
+	    servo->job.model.proxy == PHANTOM_PROXY_OFF)
+		phantom_servo_forget_touch(servo);
+}
+
+/* Fills in the job's positions. False: the set in use does not cover what contact needs. */
+static bool phantom_servo_place(struct phantom_servo *servo, const struct phantom_pass *pass)
+{
+	const struct phantom_slot *slot = servo->active;
+	struct phantom_float_job *job = &servo->job;
+	struct phantom_touch *touch = &servo->touch;
+
+	if (!slot || !phantom_set_relative(slot, pass->tip_nm, job->tip_nm))
+		return false;
+	job->path_valid =
+		touch->valid && phantom_set_relative(slot, touch->previous_nm, job->previous_nm);
+	if (!job->path_valid)
+		memcpy(job->previous_nm, job->tip_nm, sizeof(job->previous_nm));
+	job->inside = touch->inside;
+	job->proxy_face = touch->proxy_face;
+	if (!touch->inside) {
+		memcpy(job->proxy_nm, job->tip_nm, sizeof(job->proxy_nm));
+		return phantom_set_covers(slot, job->tip_nm, slot->reach_nm);
+	}
+	return phantom_set_relative(slot, touch->proxy_nm, job->proxy_nm) &&
+	       phantom_set_covers(slot, job->proxy_nm, 0) &&
+	       phantom_set_covers(slot, job->tip_nm, 0);
+}
+
+static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	const struct phantom_slot *slot = servo->active;
+	struct phantom_float_job *job = &servo->job;
+	struct phantom_touch *touch = &servo->touch;
+	int axis;
+
+	if (!slot->patch_count) {
+		touch->inside = false;
+		return;
+	}
+	job->set = slot->floats;
+	job->effects = slot->effects;
+	for (axis = 0; axis < 3; axis++)
+		job->velocity_nm_s[axis] =
+			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
+	phantom_servo_float_tick(servo, slot->ops);
+
+	touch->inside = job->inside;
+	touch->proxy_face = job->inside ? job->proxy_face : PHANTOM_PATCH_NONE;
+	for (axis = 0; axis < 3; axis++)
+		touch->proxy_nm[axis] = slot->origin_nm[axis] + job->proxy_nm[axis];
+	memcpy(pass->target_un, job->force_un, sizeof(pass->target_un));
+	memcpy(pass->normal_q30, job->normal_q30, sizeof(pass->normal_q30));
+	pass->contacts = job->contacts;
+	if (job->saturated) {
+		pass->flags |= PHANTOM_TICK_SATURATED;
+		servo->stats.next.saturated += job->saturated;
+	}
+	if (job->invalid) {
+		memset(pass->target_un, 0, sizeof(pass->target_un));
+		phantom_servo_forget_touch(servo);
+		phantom_safety_raise(&servo->safety, PHANTOM_FAULT_NUMERIC);
+	}
+}
+
+/* The force that contact asks for at the pass's tip, or zero where nothing is promised. */
+static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	struct phantom_touch *touch = &servo->touch;
+	bool off = servo->job.model.model == PHANTOM_MODEL_OFF;
+	bool reached;
+
+	if (!phantom_servo_place(servo, pass))
+		pass->flags |= PHANTOM_TICK_UNCOVERED;
+	if (servo->active && pass->now_ns - servo->stats.next.set_time_ns > servo->stale_ns)
+		pass->flags |= PHANTOM_TICK_STALE;
+	reached = !(pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) && !off;
+	if (reached) {
+		phantom_servo_evaluate(servo, pass);
+		memcpy(touch->previous_nm, pass->tip_nm, sizeof(touch->previous_nm));
+		touch->evaluated_ns = pass->now_ns;
+		touch->valid = true;
+	} else if (touch->valid && pass->now_ns - touch->evaluated_ns > PHANTOM_MEMORY_NS) {
+		phantom_servo_forget_touch(servo);
+	}
+	if (reached != servo->reached)
+		pass->blend = true;
+	servo->reached = reached;
+	if (touch->inside)
+		pass->flags |= PHANTOM_TICK_INSIDE;
+	memcpy(pass->proxy_nm, touch->inside ? touch->proxy_nm : pass->tip_nm,
+	       sizeof(pass->proxy_nm));
+}
+
+/* ---- the rest of the tick ------------------------------------------------------------------------------- */
+
+static u32 phantom_servo_device_fault(int error)
+{
+	return error == -ENODEV ? PHANTOM_FAULT_UNPLUGGED : PHANTOM_FAULT_DEVICE;
+}
+
+static void phantom_servo_sense(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	struct phantom_safety *safety = &servo->safety;
+	s64 tip_nm[3];
+	int error = servo->device->ops->read(servo->device, tip_nm);
+	int axis;
+
+	if (error) {
+		phantom_safety_raise(safety, phantom_servo_device_fault(error));
+		memcpy(pass->tip_nm, safety->tip_nm, sizeof(pass->tip_nm));
+		return;
+	}
+	for (axis = 0; axis < 3; axis++)
+		pass->tip_nm[axis] = clamp_t(s64, tip_nm[axis], -PHANTOM_POSITION_MAX_NM,
+					     PHANTOM_POSITION_MAX_NM);
+	phantom_safety_track(safety, pass->tip_nm, pass->elapsed_ns, pass->period_ns);
+}
+
+static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	struct phantom_safety *safety = &servo->safety;
+	int error;
+
+	if (pass->blend && phantom_fade_begin(&servo->fade, pass->target_un, pass->now_ns))
+		servo->stats.next.fades++;
+	if (phantom_fade_blend(&servo->fade, pass->target_un, pass->now_ns, pass->target_un))
+		pass->flags |= PHANTOM_TICK_FADING;
+	if (xchg(&servo->clear_wanted, 0))
+		phantom_safety_clear(safety);
+	if (xchg(&servo->stop_wanted, 0))
+		safety->stopping = true;
+	pass->flags |= phantom_safety_apply(safety, pass->target_un, pass->elapsed_ns,
+					    pass->period_ns, pass->force_un);
+	error = servo->device->ops->write(servo->device, pass->force_un);
+	if (error) {
+		phantom_safety_raise(safety, phantom_servo_device_fault(error));
+		memset(safety->force_un, 0, sizeof(safety->force_un));
+		memset(pass->force_un, 0, sizeof(pass->force_un));
+	}
+	if (pass->flags & PHANTOM_TICK_CLAMPED)
+		servo->stats.next.clamped++;
+	if (safety->faults)
+		phantom_fade_reset(&servo->fade);
+}
+
+static void phantom_servo_record(struct phantom_servo *servo, const struct phantom_pass *pass,
+				 u64 latency_ns, u64 duration_ns)
+{
+	const struct phantom_status *next = &servo->stats.next;
+	struct phantom_tick record = {
+		.tick = next->tick,
+		.time_ns = pass->now_ns,
+		.set_id = servo->reached ? next->set_id : 0,
+		.contacts = pass->contacts,
+		.flags = pass->flags,
+		.faults = servo->safety.faults,
+		.latency_ns = min_t(u64, latency_ns, U32_MAX),
+		.duration_ns = min_t(u64, duration_ns, U32_MAX),
+	};
+
+	memcpy(record.tip_nm, pass->tip_nm, sizeof(record.tip_nm));
+	memcpy(record.proxy_nm, pass->proxy_nm, sizeof(record.proxy_nm));
+	memcpy(record.force_un, pass->force_un, sizeof(record.force_un));
+	phantom_stats_record(&servo->stats, &record);
+}
+
+static void phantom_servo_publish(struct phantom_servo *servo, const struct phantom_pass *pass)
+{
+	struct phantom_stats *stats = &servo->stats;
+	struct phantom_status *next = &stats->next;
+	u64 duration = phantom_servo_now(servo) - pass->now_ns;
+	u64 latency = pass->now_ns - pass->due_ns;
+	int axis;
+
+	next->time_ns = pass->now_ns;
+	next->busy_ns += duration;
+	memcpy(next->tip_nm, pass->tip_nm, sizeof(next->tip_nm));
+	memcpy(next->proxy_nm, pass->proxy_nm, sizeof(next->proxy_nm));
+	memcpy(next->normal_q30, pass->normal_q30, sizeof(next->normal_q30));
+	memcpy(next->force_un, pass->force_un, sizeof(next->force_un));
+	for (axis = 0; axis < 3; axis++)
+		next->velocity_nm_s[axis] =
+			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
+	next->contacts = pass->contacts;
+	next->flags = pass->flags;
+	next->state = servo->state;
+	next->faults = servo->safety.faults;
+	next->section_max_ns = max_t(u32, next->section_max_ns, READ_ONCE(servo->prepare_max_ns));
+	phantom_stats_count(&stats->page->latency, latency);
+	phantom_stats_count(&stats->page->duration, duration);
+	phantom_stats_publish(stats);
+	phantom_servo_record(servo, pass, latency, duration);
+}
+
+/* True when POLLPRI has something new to tell: phantom_abi.h, POLL. */
+static bool phantom_servo_needs_set(struct phantom_servo *servo, const struct phantom_pass *pass)
+{
+	const struct phantom_slot *slot = servo->active;
+	u32 half;
+
+	if (pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) {
+		if (!servo->warned || pass->now_ns - servo->reminded_ns >= PHANTOM_REMIND_NS) {
+			servo->warned = true;
+			servo->reminded_ns = pass->now_ns;
+			return true;
+		}
+		return false;
+	}
+	if (servo->warned || servo->touch.inside)
+		return false;
+	half = slot->reach_nm + (slot->radius_nm - slot->reach_nm) / 2;
+	if (phantom_set_covers(slot, servo->job.tip_nm, half))
+		return false;
+	servo->warned = true;
+	servo->reminded_ns = pass->now_ns;
+	return true;
+}
+
+/* State, events and wake-ups. */
+static void phantom_servo_tell(struct phantom_servo *servo, const struct phantom_pass *pass)
+{
+	u32 faults = servo->safety.faults;
+	bool event = phantom_servo_needs_set(servo, pass);
+
+	if (faults & ~servo->faults)
+		event = true;
+	WRITE_ONCE(servo->causes, servo->safety.causes);
+	WRITE_ONCE(servo->faults, faults);
+	WRITE_ONCE(servo->state, faults ? PHANTOM_STATE_FAULT : PHANTOM_STATE_RUNNING);
+	if (event)
+		WRITE_ONCE(servo->events, servo->events + 1);
+	if (!event && pass->now_ns - servo->woken_ns < PHANTOM_WAKE_NS)
+		return;
+	servo->woken_ns = pass->now_ns;
+	if (wq_has_sleeper(&servo->wait))
+		wake_up_interruptible(&servo->wait);
+}
+
+static void phantom_servo_tick(struct phantom_servo *servo, u64 now_ns, u64 period_ns)
+{
+	struct phantom_pass pass = {
+		.now_ns = now_ns,
+		.due_ns = servo->next_ns,
+		.elapsed_ns = now_ns - servo->last_ns,
+		.period_ns = period_ns,
+	};
+
+	servo->last_ns = now_ns;
+	phantom_servo_take_set(servo, &pass);
+	phantom_servo_take_model(servo, &pass);
+	phantom_safety_watch(&servo->safety, now_ns - servo->next_ns);
+	phantom_servo_sense(servo, &pass);
+	phantom_servo_contact(servo, &pass);
+	phantom_servo_act(servo, &pass);
+	phantom_servo_tell(servo, &pass);
+	phantom_servo_publish(servo, &pass);
+}
+
+bool phantom_servo_step(struct phantom_servo *servo)
+{
+	struct phantom_status *next = &servo->stats.next;
+	u32 rate_hz = READ_ONCE(servo->rate_hz);
+	u64 period = NSEC_PER_SEC / rate_hz;
+	u64 now = phantom_servo_now(servo);
+	u64 skipped;
+
+	next->rate_hz = rate_hz;
+	next->tick++;
+	phantom_servo_tick(servo, now, period);
+
+	/* Whole periods that went by unserved are skipped and counted, never run in a burst. */
+	servo->next_ns += period;
+	now = phantom_servo_now(servo);
+	if (now >= servo->next_ns + period) {
+		skipped = (now - servo->next_ns) / period;
+		servo->next_ns += skipped * period;
+		next->tick += skipped;
+		next->missed += skipped;
+	}
+	return !phantom_safety_stopped(&servo->safety);
+}
+
+void phantom_servo_run(struct phantom_servo *servo)
+{
+	struct phantom_clock *clock = servo->clock;
+
+	while (clock->ops->sleep_until(clock, servo->next_ns))
+		if (!phantom_servo_step(servo))
+			break;
+}

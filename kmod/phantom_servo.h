@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * phantom_servo.h - the fast task: one tick per period turns the tip's position into a force.
+ *
+ * WHO MAY TOUCH WHAT
+ *   "control" is any thread that holds the character device's control mutex. The servo thread takes no
+ *   lock that control holds, and waits for nobody.
+ *
+ *   fixed      set by init, read by all
+ *   word       one aligned word, READ_ONCE/WRITE_ONCE; written by the side named, read by any
+ *   request    set by control with a release store, taken by the servo with xchg
+ *   run        the servo's while it runs, control's while it does not. start() and stop() of the clock
+ *              hand it over: they order all memory, as creating and joining a thread does
+ *   own        has a protocol of its own, in its header
+ */
+#ifndef PHANTOM_SERVO_H
+#define PHANTOM_SERVO_H
+
+#include <phantom_platform.h>
+#include "device/phantom_device.h"
+#include "float/phantom_float.h"
+#include "phantom_abi.h"
+#include "phantom_clock.h"
+#include "phantom_fade.h"
+#include "phantom_safety.h"
+#include "phantom_set.h"
+#include "phantom_stats.h"
+
+/* What contact remembers from tick to tick, in world coordinates so that no swap of sets moves it. */
+struct phantom_touch {
+	bool valid; /* previous_nm was evaluated not longer than PHANTOM_MEMORY_NS ago */
+	bool inside;
+	s64 previous_nm[3]; /* the tip where contact was evaluated last */
+	s64 proxy_nm[3]; /* while inside */
+	u32 proxy_face;
+	u64 evaluated_ns; /* when */
+};
+
+/* What a tick finds out on its way. */
+struct phantom_pass {
+	u64 now_ns;
+	u64 due_ns; /* the period's begin */
+	u64 elapsed_ns; /* since the last tick */
+	u64 period_ns;
+	s64 tip_nm[3];
+	s64 proxy_nm[3];
+	s32 target_un[3]; /* by contact */
+	s32 force_un[3]; /* as sent */
+	s32 normal_q30[3];
+	u32 contacts;
+	u32 flags; /* PHANTOM_TICK_... */
+	bool blend; /* something changed that needs a fade */
+};
+
+struct phantom_servo {
+	/* fixed */
+	struct phantom_clock *clock;
+	struct phantom_device *device; /* NULL: there is none */
+	const struct phantom_float_ops *float_ops;
+	const struct phantom_float_ops *double_ops; /* NULL: not offered */
+	u64 features; /* PHANTOM_FEATURE_... */
+
+	/* word, control */
+	u32 rate_hz;
+	u64 model; /* packed, one byte a field: phantom_model_pack() */
+	u32 prepare_max_ns; /* longest float section of a submission */
+	u64 prepare_sections;
+
+	/* request */
+	u32 stop_wanted;
+	u32 clear_wanted;
+
+	/* word, servo while it runs, else control */
+	u32 state; /* PHANTOM_STATE_... */
+	u32 faults; /* latched */
+	u32 causes; /* of the last tick */
+	u32 ended; /* the run is over, the thread about to leave */
+	u32 events; /* counts what POLLPRI tells */
+	u32 runs; /* runs ended */
+
+	/* own */
+	struct phantom_sets sets;
+	struct phantom_stats stats;
+	wait_queue_head_t wait; /* woken by records, events, the end of a run */
+
+	/* run */
+	struct phantom_safety safety;
+	struct phantom_fade fade;
+	struct phantom_touch touch;
+	struct phantom_slot *active; /* the set in use */
+	u64 active_model; /* packed */
+	u64 stale_ns;
+	u64 next_ns; /* begin of the next period */
+	u64 last_ns; /* time of the last tick */
+	u64 woken_ns; /* when readers were woken last */
+	u64 reminded_ns; /* when POLLPRI was raised last for want of a set */
+	bool reached; /* the last tick's force was computed, not faded out */
+	bool warned; /* half of the set's slack is used up, and was told */
+	struct phantom_float_job job;
+};
+
+/*
+ * patches_max: PHANTOM_PATCHES_MAX, or more in user mode. double_ops may be NULL. 0 or -errno.
+ * The servo owns neither clock nor device.
+ */
+int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
+		       struct phantom_device *device, const struct phantom_float_ops *float_ops,
+		       const struct phantom_float_ops *double_ops, u32 patches_max);
+/* Not running. */
+void phantom_servo_destroy(struct phantom_servo *servo);
+
+/* ---- control mutex held; errors as phantom_abi.h says ----------------------------------------------- */
+int phantom_servo_start(struct phantom_servo *servo, const struct phantom_start *start);
+/* Sleeps until the force has ramped to zero and nothing of the servo runs. */
+void phantom_servo_stop(struct phantom_servo *servo);
+int phantom_servo_clear_fault(struct phantom_servo *servo);
+int phantom_servo_set_rate(struct phantom_servo *servo, u32 rate_hz);
+int phantom_servo_set_model(struct phantom_servo *servo, const struct phantom_model *model);
+/* `user` points to a struct phantom_set in the caller's memory. */
+int phantom_servo_submit(struct phantom_servo *servo, const void __user *user);
+/* The feeder has gone: no set, no contact state. Not running. */
+void phantom_servo_forget(struct phantom_servo *servo);
+
+/* ---- between phantom_control.c and phantom_servo.c ------------------------------------------------------ */
+static inline u64 phantom_model_pack(const struct phantom_model *model)
+{
+	return (u64)model->model | (u64)model->newton_steps << 8 | (u64)model->combine << 16 |
+	       (u64)model->proxy << 24 | (u64)model->arith << 32;
+}
+
+static inline void phantom_model_unpack(u64 packed, struct phantom_model *model)
+{
+	memset(model, 0, sizeof(*model));
+	model->model = packed & 0xff;
+	model->newton_steps = packed >> 8 & 0xff;
+	model->combine = packed >> 16 & 0xff;
+	model->proxy = packed >> 24 & 0xff;
+	model->arith = packed >> 32 & 0xff;
+}
+
+/*
+ * Converts sets.copy into the slot, one float section per PHANTOM_FLOAT_PREPARE_MAX patches. Process
+ * context, control mutex held.
+ */
+void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot);
+/* Run state. */
+void phantom_servo_forget_touch(struct phantom_servo *servo);
+
+/* ---- for clocks only: the servo thread ---------------------------------------------------------------- */
+/* Ticks until stopped. */
+void phantom_servo_run(struct phantom_servo *servo);
+/* One tick and the choice of the next period, at servo->next_ns. False: the run is over. */
+bool phantom_servo_step(struct phantom_servo *servo);
+
+#endif /* PHANTOM_SERVO_H */

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * phantom_set.h - triangle sets: from the caller's memory to the servo, without either waiting.
+ *
+ * A pool of slots. Each slot has one holder at a time, and only the holder touches it:
+ *
+ *     FREE --fill--> FILLING --hand over--> WAITING --take--> IN USE --release--> FREE
+ *            (submitter)        (exchange)           (servo)            (servo)
+ *                                   |
+ *                                   +-- replaced before it was taken --> FREE  (submitter)
+ *
+ * WAITING is the one pointer `waiting`, exchanged atomically by both sides; a slot becomes FREE by a
+ * release store and is picked by an acquire load. In use, waiting and being filled makes three;
+ * the fourth lets a submitter work while the servo still holds an outgoing set. Submitters are serialised by
+ * the control mutex.
+ */
+#ifndef PHANTOM_SET_H
+#define PHANTOM_SET_H
+
+#include <phantom_platform.h>
+#include "phantom_abi.h"
+#include "float/phantom_float.h"
+
+#define PHANTOM_SLOTS 4
+
+#define PHANTOM_SLOT_FREE 0U
+#define PHANTOM_SLOT_HELD 1U
+
+/* Coverage farther than this counts as this far: keeps the squares within u64 (3 * 2e9^2 < 2^64). */
+#define PHANTOM_COVERAGE_MAX_NM 2000000000U
+
+struct phantom_slot {
+	u32 holder; /* PHANTOM_SLOT_FREE or _HELD, release/acquire */
+	/* What follows is the holder's. */
+	u64 id;
+	s64 origin_nm[3];
+	s32 centre_nm[3];
+	u32 radius_nm;
+	u32 reach_nm; /* largest contact radius among its materials */
+	u32 patch_count;
+	u32 effects;
+	u32 level;
+	u32 level_error_nm;
+	u32 refused; /* patches that could not be computed */
+	u32 object_count;
+	u32 object[PHANTOM_OBJECTS_MAX];
+	u32 revision[PHANTOM_OBJECTS_MAX];
+	const struct phantom_float_ops *ops; /* which prepared `floats`, and alone can use it */
+	struct phantom_float_set *floats;
+	u32 capacity; /* patches that floats has room for, as ops lays them out */
+};
+
+/* The caller's arrays, copied before anything is believed. Control mutex. */
+struct phantom_set_copy {
+	struct phantom_set header;
+	struct phantom_material materials[PHANTOM_MATERIALS_MAX];
+	struct phantom_object objects[PHANTOM_OBJECTS_MAX];
+	struct phantom_patch *patches;
+	u32 capacity; /* of patches */
+};
+
+struct phantom_sets {
+	struct phantom_slot slot[PHANTOM_SLOTS];
+	struct phantom_slot *waiting; /* exchanged atomically */
+	/* Control mutex: */
+	struct phantom_set_copy copy;
+	u64 last_id;
+	u32 patches_max;
+};
+
+void phantom_set_init(struct phantom_sets *sets, u32 patches_max);
+/* No servo, no submitter any more. */
+void phantom_set_destroy(struct phantom_sets *sets);
+
+/* ---- submitter, process context, control mutex held -------------------------------------------- */
+
+/*
+ * Copies and validates the set, and picks a slot with room for it in the layout of `ops`. The slot is
+ * the caller's until handed over; its float data is not yet written. ERR_PTR as phantom_abi.h says.
+ */
+struct phantom_slot *phantom_set_fill(struct phantom_sets *sets, const void __user *user,
+				      const struct phantom_float_ops *ops);
+/* Makes the slot the one that the servo takes next. */
+void phantom_set_hand_over(struct phantom_sets *sets, struct phantom_slot *slot);
+/* Forgets the waiting set and the last id. */
+void phantom_set_forget(struct phantom_sets *sets);
+
+/* phantom_set_check.c: 0 or -EINVAL. Looks at every field of the copy. */
+int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 patches_max);
+int phantom_set_check_arrays(const struct phantom_set_copy *copy);
+
+/* ---- servo, wait-free ------------------------------------------------------------------------------ */
+
+/* The newest set handed over since the last call, or NULL. */
+struct phantom_slot *phantom_set_take(struct phantom_sets *sets);
+void phantom_set_release(struct phantom_slot *slot);
+
+/* True when both know an object but disagree about its revision. */
+bool phantom_set_revised(const struct phantom_slot *before, const struct phantom_slot *after);
+/* `position` relative to the slot's origin; false when it does not fit, and then it is not covered. */
+bool phantom_set_relative(const struct phantom_slot *slot, const s64 position_nm[3],
+			  s32 relative_nm[3]);
+/* True when the ball of that radius round a point relative to the origin is promised to be complete. */
+bool phantom_set_covers(const struct phantom_slot *slot, const s32 point_nm[3], u32 ball_nm);
+
+#endif /* PHANTOM_SET_H */

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * phantom_set_check.c - every field of a submitted set, against the table in phantom_abi.h. What is
+ * checked is the module's own copy: the caller cannot change it meanwhile.
+ */
+#include <phantom_platform.h>
+#include "phantom_set.h"
+
+/* |n| = 1 to 2^-10, compared as squares in Q2.60. */
+#define PHANTOM_UNIT_LENGTH (1ULL << 30)
+#define PHANTOM_UNIT_SLACK (1ULL << 20)
+#define PHANTOM_UNIT_LOW (PHANTOM_UNIT_LENGTH - PHANTOM_UNIT_SLACK)
+#define PHANTOM_UNIT_HIGH (PHANTOM_UNIT_LENGTH + PHANTOM_UNIT_SLACK)
+
+static bool phantom_check_coordinates(const s32 point_nm[3])
+{
+	int axis;
+
+	for (axis = 0; axis < 3; axis++)
+		if (point_nm[axis] > PHANTOM_COORDINATE_MAX_NM ||
+		    point_nm[axis] < -PHANTOM_COORDINATE_MAX_NM)
+			return false;
+	return true;
+}
+
+static bool phantom_check_unit(const s32 vector_q30[3])
+{
+	u64 sum = 0;
+	int axis;
+
+	for (axis = 0; axis < 3; axis++) {
+		s64 component = vector_q30[axis];
+
+		sum += (u64)(component * component); /* <= 2^62 each */
+	}
+	return sum >= PHANTOM_UNIT_LOW * PHANTOM_UNIT_LOW &&
+	       sum <= PHANTOM_UNIT_HIGH * PHANTOM_UNIT_HIGH;
+}
+
+int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 patches_max)
+{
+	int axis;
+
+	if (header->flags || header->reserved)
+		return -EINVAL;
+	if (header->id <= last_id)
+		return -EINVAL;
+	if (header->patch_count > patches_max || header->material_count > PHANTOM_MATERIALS_MAX ||
+	    header->object_count > PHANTOM_OBJECTS_MAX)
+		return -EINVAL;
+	if (header->effects & ~PHANTOM_EFFECTS_KNOWN)
+		return -EINVAL;
+	for (axis = 0; axis < 3; axis++)
+		if (header->origin_nm[axis] > PHANTOM_POSITION_MAX_NM ||
+		    header->origin_nm[axis] < -PHANTOM_POSITION_MAX_NM)
+			return -EINVAL;
+	if (!phantom_check_coordinates(header->centre_nm))
+		return -EINVAL;
+	return 0;
+}
+
+static bool phantom_check_patch(const struct phantom_patch *patch, const struct phantom_set *header)
+{
+	int i;
+
+	for (i = 0; i < 3; i++) {
+		if (!phantom_check_coordinates(patch->vertex_nm[i]) ||
+		    !phantom_check_unit(patch->normal_q30[i]))
+			return false;
+		if (patch->neighbour[i] >= header->patch_count &&
+		    patch->neighbour[i] != PHANTOM_PATCH_NONE)
+			return false;
+	}
+	return patch->object < header->object_count && patch->material < header->material_count &&
+	       patch->kind == PHANTOM_PATCH_FACE && !patch->reserved[0] && !patch->reserved[1];
+}
+
+static bool phantom_check_material(const struct phantom_material *material)
+{
+	int i;
+
+	for (i = 0; i < 4; i++)
+		if (material->reserved[i])
+			return false;
+	if (!material->radius_nm || (material->effects & ~PHANTOM_EFFECTS_KNOWN))
+		return false;
+	return !material->damping_mns_m || (material->effects & PHANTOM_EFFECT_DAMPING);
+}
+
+/* Version 1 of the ABI: objects stand still where they are. */
+static bool phantom_check_object(const struct phantom_object *object)
+{
+	int i;
+
+	if (object->reserved[0] || object->reserved[1])
+		return false;
+	for (i = 0; i < 3; i++)
+		if (object->translation_nm[i] || object->velocity_nm_s[i] ||
+		    object->angular_velocity_urad_s[i] || object->rotation_q30[i + 1])
+			return false;
+	return object->rotation_q30[0] == PHANTOM_Q30_ONE;
+}
+
+int phantom_set_check_arrays(const struct phantom_set_copy *copy)
+{
+	const struct phantom_set *header = &copy->header;
+	u32 effects = 0;
+	u32 i, j;
+
+	for (i = 0; i < header->material_count; i++) {
+		if (!phantom_check_material(&copy->materials[i]))
+			return -EINVAL;
+		effects |= copy->materials[i].effects;
+	}
+	if (effects != header->effects)
+		return -EINVAL;
+	for (i = 0; i < header->object_count; i++) {
+		if (!phantom_check_object(&copy->objects[i]))
+			return -EINVAL;
+		for (j = 0; j < i; j++)
+			if (copy->objects[j].object == copy->objects[i].object)
+				return -EINVAL;
+	}
+	for (i = 0; i < header->patch_count; i++)
+		if (!phantom_check_patch(&copy->patches[i], header))
+			return -EINVAL;
+	return 0;
+}
