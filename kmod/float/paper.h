@@ -34,6 +34,7 @@
 
 /* Keeps a division by the length of a vector that may be zero finite. */
 #define TINY ((real)1e-30)
+#define SMALLEST ((real)1e-37) /* above float32's smallest normal number */
 
 struct paper_wall {
 	struct lanes3 normal; /* n' */
@@ -122,7 +123,7 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	if (!mask_bits(contact))
 		return false;
 	n = paper_normal(wall);
-	inverse = lanes_all(1) / lanes_sqrt(lanes3_dot(n, n) + lanes_all(TINY * TINY));
+	inverse = lanes_all(1) / lanes_sqrt(lanes_max(lanes3_dot(n, n), lanes_all(SMALLEST)));
 	n = lanes3_scale(n, inverse);
 	cosine = lanes3_dot(g, n);
 	contact &= cosine > GRAZING;
@@ -131,7 +132,10 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	if (!mask_bits(contact))
 		return false;
 	out->contact = contact;
-	out->normal = n;
+	/* 0 elsewhere: those lanes take part in sums, and may hold what is no number */
+	out->normal.x = lanes_keep(contact, n.x);
+	out->normal.y = lanes_keep(contact, n.y);
+	out->normal.z = lanes_keep(contact, n.z);
 	out->magnitude = lanes_keep(contact, block->stiffness[step] * (radius - out->length));
 	out->height = height;
 	return true;
