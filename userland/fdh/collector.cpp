@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fdh/grid.hpp"
+#include "fdh/ranking.hpp"
+
 namespace phantom::fdh {
 
 namespace {
@@ -12,14 +15,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Hits a query makes room for beyond those it must keep, before it sorts some out.
 constexpr std::size_t spare_hits = 128;
-
-/// By (distance, object, triangle); on squares as on distances.
-bool nearer(const Hit& a, const Hit& b)
-{
-    if (a.distance != b.distance)
-        return a.distance < b.distance;
-    return a.object != b.object ? a.object < b.object : a.triangle < b.triangle;
-}
 
 double square_up(double x)
 {
@@ -57,10 +52,9 @@ double NearestCollector::limit2() const
 /// Reduces the hits to the `wanted` nearest; the last of them is then the farthest.
 void NearestCollector::keep_nearest(std::size_t wanted)
 {
-    const auto begin = sink_.hits, end = begin + sink_.size;
-    std::nth_element(begin, begin + wanted - 1, end, nearer);
+    select_nearest({sink_.hits, sink_.size}, wanted);
     sink_.size = wanted;
-    kept_limit2_ = begin[wanted - 1].distance;
+    kept_limit2_ = sink_.hits[wanted - 1].distance;
 }
 
 void NearestCollector::make_room(Sink& sink)
@@ -75,8 +69,8 @@ void NearestCollector::make_room(Sink& sink)
     }
     if (sink.size + spare_hits / 2 <= sink.capacity)
         return;
-    auto& hits = self.out_.hits;
-    hits.resize(std::max({hits.capacity(), 2 * sink.size, spare_hits}));
+    auto& hits = self.out_.workspace;
+    hits.resize(std::max({hits.size(), 2 * sink.size, spare_hits}));
     sink.hits = hits.data();
     sink.capacity = hits.size();
 }
@@ -91,10 +85,11 @@ void NearestCollector::finish()
         covered = std::clamp(std::sqrt(left_out.distance) - error_, 0.0, max_radius_);
         sink_.size = count_;
     }
-    for (std::size_t i = 0; i < sink_.size; i++)
-        sink_.hits[i].distance = std::sqrt(sink_.hits[i].distance);
-    std::sort(sink_.hits, sink_.hits + sink_.size, nearer);
-    out_.hits.resize(sink_.size);
+    const std::span<Hit> found(sink_.hits, sink_.size);
+    for (Hit& hit : found)
+        hit.distance = std::sqrt(hit.distance);
+    out_.hits.resize(found.size());
+    sort_into(found, out_.hits);
     out_.coverage = covered;
     out_.counts = sink_.counts;
 }

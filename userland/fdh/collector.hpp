@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Keeps what a search finds inside the caller's own vector, so that a warm query allocates nothing.
+// Keeps what a search finds inside the caller's own vectors, so that a warm query allocates nothing.
 #pragma once
 
 #include "fdh/search.hpp"

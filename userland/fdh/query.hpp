@@ -31,6 +31,7 @@ struct Nearest {
     std::vector<Hit> hits;
     double coverage = 0;
     QueryCounts counts;
+    std::vector<Hit> workspace; ///< of the query; kept so that the next one need not allocate
     void clear()
     {
         hits.clear();
