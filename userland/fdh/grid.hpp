@@ -13,6 +13,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "fdh/hull.hpp"
@@ -73,16 +74,29 @@ struct Grid {
     }
 };
 
+/// The next float up or down; of an infinity, itself.
+inline float next_up(float f)
+{
+    if (!(f < std::numeric_limits<float>::infinity()))
+        return f;
+    const auto bits = std::bit_cast<std::int32_t>(f + 0.0f); // no -0
+    return std::bit_cast<float>(bits >= 0 ? bits + 1 : bits - 1);
+}
+inline float next_down(float f)
+{
+    return -next_up(-f);
+}
+
 /// Nearest float not above / not below x.
 inline float round_down(double x)
 {
     const auto f = static_cast<float>(x);
-    return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+    return f > x ? next_down(f) : f;
 }
 inline float round_up(double x)
 {
     const auto f = static_cast<float>(x);
-    return f < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+    return f < x ? next_up(f) : f;
 }
 
 } // namespace phantom::fdh

@@ -16,7 +16,7 @@ constexpr std::size_t worth_dealing = 24;
 /// the next.
 class Buckets {
   public:
-    static constexpr int count = 256;
+    static constexpr int count = 128;
 
     explicit Buckets(std::span<const Hit> hits)
     {

@@ -30,7 +30,7 @@ float search_limit(double limit2)
     constexpr float infinity = std::numeric_limits<float>::infinity();
     constexpr double largest = std::numeric_limits<float>::max();
     const double padded = limit2 * (1 + 0x1p-19);
-    return padded < largest / 2 ? std::nextafter(round_up(padded), infinity) : infinity;
+    return padded < largest / 2 ? next_up(round_up(padded)) : infinity;
 }
 
 template <int K>

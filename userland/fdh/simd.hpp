@@ -32,6 +32,10 @@ struct Simd {
     }
     static Double load_double(const float* p)
     {
+#if defined(__AVX512F__)
+        if constexpr (I == Isa::avx512) // GCC 12 would convert it in halves
+            return Double(_mm512_maskz_cvtps_pd(0xff, _mm256_loadu_ps(p)));
+#endif
         typename VectorType<float, double_width>::type v;
         __builtin_memcpy(&v, p, sizeof v);
         return __builtin_convertvector(v, Double);

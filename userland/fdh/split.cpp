@@ -68,7 +68,16 @@ Float4 centre(const PrimitiveBox& box)
 /// threads write without a lock and the result does not depend on them. 0 stands for a leaf.
 struct BinaryNode {
     std::uint32_t left, right; ///< where the children are split
-    float area;                ///< half the surface of its box
+    /// How best to make of this subtree a forest of i + 1 trees: so many of them from the left child, the
+    /// others from the right; 0: one tree less is no worse. The last entry is for the children of a node made
+    /// of this one.
+    std::uint8_t from_left[lanes];
+};
+
+/// A subtree of the binary tree and what the best eight-wide forest of i + 1 trees made of it costs.
+struct Subtree {
+    std::uint32_t split = 0; ///< 0: a leaf
+    float cost[lanes - 1] = {};
 };
 
 class Splitter {
@@ -78,12 +87,11 @@ class Splitter {
     {
     }
 
-    /// Where [begin, end) is split; 0 if it is a leaf.
-    std::uint32_t divide(std::uint32_t begin, std::uint32_t end, int depth, unsigned threads)
+    Subtree divide(std::uint32_t begin, std::uint32_t end, int depth, unsigned threads)
     {
         const std::uint32_t count = end - begin;
         if (count <= leaf_size_)
-            return 0;
+            return {};
         Box box, centres;
         for (std::uint32_t i = begin; i < end; i++) {
             box.grow(low_of(boxes_[i]), high_of(boxes_[i]));
@@ -93,24 +101,23 @@ class Splitter {
         std::uint32_t middle = depth < balanced_depth ? partition(begin, end, centres) : 0;
         if (middle == 0)
             middle = halve(begin, end, centres);
-        BinaryNode& node = nodes_[middle];
-        node.area = box.area();
-        auto left = [&, this] { node.left = divide(begin, middle, depth + 1, threads / 2); };
-        auto right = [&, this] { node.right = divide(middle, end, depth + 1, threads - threads / 2); };
+        Subtree left, right;
+        auto go_left = [&, this] { left = divide(begin, middle, depth + 1, threads / 2); };
+        auto go_right = [&, this] { right = divide(middle, end, depth + 1, threads - threads / 2); };
         constexpr std::uint32_t worth_a_thread = 8192;
         if (threads > 1 && count > worth_a_thread) {
-            fork_join(left, right);
+            fork_join(go_left, go_right);
         } else {
-            left();
-            right();
+            go_left();
+            go_right();
         }
-        return middle;
+        return join(middle, box.area(), left, right);
     }
 
     Shape collapse(std::uint32_t root)
     {
         Shape shape;
-        shape.nodes.reserve(boxes_.size() / (3 * leaf_size_) + 1);
+        shape.nodes.reserve(boxes_.size() / (4 * leaf_size_) + 1);
         emit(shape, {0, static_cast<std::uint32_t>(boxes_.size()), root});
         return shape;
     }
@@ -129,6 +136,38 @@ class Splitter {
         float cost = infinity;
         int axis = -1, bin = 0; ///< bins up to and including `bin` go left
     };
+
+    /// Notes the node and how it is best collapsed. A node costs as much as it is likely to be visited: half
+    /// its surface, plus one square step so that flat nodes are not free. The leaves are what they are.
+    Subtree join(std::uint32_t middle, float area, const Subtree& left, const Subtree& right)
+    {
+        BinaryNode& node = nodes_[middle];
+        node.left = left.split;
+        node.right = right.split;
+        Subtree result;
+        result.split = middle;
+        float shared[lanes]; // cost of i + 1 trees, none of which contains both children
+        for (int trees = 2; trees <= lanes; trees++) {
+            float best = infinity;
+            for (int k = 1; k < trees; k++) {
+                const float cost = left.cost[k - 1] + right.cost[trees - k - 1];
+                if (cost < best) {
+                    best = cost;
+                    node.from_left[trees - 1] = static_cast<std::uint8_t>(k);
+                }
+            }
+            shared[trees - 1] = best;
+        }
+        node.from_left[0] = 0;
+        result.cost[0] = shared[lanes - 1] + area + 1;
+        for (int i = 1; i < lanes - 1; i++) {
+            const bool fewer = result.cost[i - 1] < shared[i];
+            result.cost[i] = fewer ? result.cost[i - 1] : shared[i];
+            if (fewer)
+                node.from_left[i] = 0;
+        }
+        return result;
+    }
 
     /// Leaves a range of this size fills, as a cost: full leaves are cheap.
     [[nodiscard]] float leaves(std::uint32_t count) const
@@ -216,28 +255,30 @@ class Splitter {
         return middle;
     }
 
+    /// Appends the roots of the best forest of at most `trees` made of a range.
+    void gather(Range range, int trees, Range* roots, int& count) const
+    {
+        const BinaryNode& node = nodes_[range.split];
+        while (range.split != 0 && trees > 1 && node.from_left[trees - 1] == 0)
+            trees--;
+        if (range.split == 0 || trees == 1) {
+            roots[count++] = range;
+            return;
+        }
+        const int left = node.from_left[trees - 1];
+        gather({range.begin, range.split, node.left}, left, roots, count);
+        gather({range.split, range.end, node.right}, trees - left, roots, count);
+    }
+
     /// Writes the node for a range, then those below it. Returns its index.
     std::uint32_t emit(Shape& shape, Range range)
     {
-        Range children[lanes] = {range};
-        int count = 1;
-        while (count < lanes) {
-            int largest = -1;
-            for (int i = 0; i < count; i++) {
-                const bool inner = children[i].split != 0;
-                if (inner &&
-                    (largest < 0 || nodes_[children[i].split].area > nodes_[children[largest].split].area))
-                    largest = i;
-            }
-            if (largest < 0)
-                break;
-            const Range parent = children[largest];
-            const BinaryNode& node = nodes_[parent.split];
-            std::copy_backward(children + largest + 1, children + count, children + count + 1);
-            children[largest] = {parent.begin, parent.split, node.left};
-            children[largest + 1] = {parent.split, parent.end, node.right};
-            count++;
-        }
+        Range children[lanes];
+        int count = 0;
+        if (range.split == 0)
+            children[count++] = range; // a tree that is one leaf
+        else
+            gather(range, lanes, children, count);
         const auto index = static_cast<std::uint32_t>(shape.nodes.size());
         shape.nodes.emplace_back().count = count;
         for (int i = 0; i < count; i++) {
@@ -260,7 +301,7 @@ Shape split(std::span<PrimitiveBox> boxes, unsigned leaf_size, unsigned threads)
     if (boxes.empty())
         return {};
     Splitter splitter(boxes, leaf_size);
-    const std::uint32_t root = splitter.divide(0, static_cast<std::uint32_t>(boxes.size()), 0, threads);
+    const std::uint32_t root = splitter.divide(0, static_cast<std::uint32_t>(boxes.size()), 0, threads).split;
     return splitter.collapse(root);
 }
 
