@@ -8,7 +8,11 @@
 #ifndef PHANTOM_PLATFORM_H
 #define PHANTOM_PLATFORM_H
 
+/* Before the first include: what every line of the log begins with. */
+#define pr_fmt(fmt) KBUILD_MODNAME ": " fmt
+
 #include <linux/atomic.h>
+#include <linux/completion.h>
 #include <linux/cpu.h>
 #include <linux/err.h>
 #include <linux/errno.h>

@@ -54,20 +54,22 @@ static void phantom_stats_empty(struct phantom_histogram *histogram)
 void phantom_stats_begin(struct phantom_stats *stats)
 {
 	struct phantom_status *next = &stats->next;
-	struct phantom_status kept = *next;
 
-	memset(next, 0, sizeof(*next));
-	next->abi_version = kept.abi_version;
-	next->faults = kept.faults;
-	next->rate_hz = kept.rate_hz;
-	next->isa = kept.isa;
-	next->model = kept.model;
-	next->sequence = kept.sequence;
-	next->set_id = kept.set_id;
-	next->set_patches = kept.set_patches;
-	next->set_time_ns = kept.set_time_ns;
-	next->set_level = kept.set_level;
-	next->set_level_error_nm = kept.set_level_error_nm;
+	next->tick = 0;
+	next->missed = 0;
+	next->busy_ns = 0;
+	memset(next->velocity_nm_s, 0, sizeof(next->velocity_nm_s));
+	memset(next->normal_q30, 0, sizeof(next->normal_q30));
+	memset(next->force_un, 0, sizeof(next->force_un));
+	next->contacts = 0;
+	next->flags = 0;
+	next->sets = 0;
+	next->fades = 0;
+	next->saturated = 0;
+	next->refused = 0;
+	next->clamped = 0;
+	next->sections = 0;
+	next->section_max_ns = 0;
 	phantom_stats_empty(&stats->page->latency);
 	phantom_stats_empty(&stats->page->duration);
 	phantom_stats_empty(&stats->page->section);

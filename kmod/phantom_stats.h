@@ -33,7 +33,7 @@ int phantom_stats_init(struct phantom_stats *stats);
 void phantom_stats_destroy(struct phantom_stats *stats);
 
 /* ---- the writer ----------------------------------------------------------------------------------- */
-/* A run begins: counters and histograms to zero. */
+/* A run begins: counters and histograms to zero; rate, model and the set in use stay. */
 void phantom_stats_begin(struct phantom_stats *stats);
 /* Copies `next` to the page. */
 void phantom_stats_publish(struct phantom_stats *stats);

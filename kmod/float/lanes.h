@@ -20,7 +20,7 @@
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 /* Functions kept apart, so that no stack frame grows beyond the kernel's 2 KB. */
-#define LANES_NOINLINE static __attribute__((noinline))
+#define LANES_NOINLINE static __attribute__((__noinline__))
 
 #ifdef PHANTOM_REAL_DOUBLE
 typedef double real;
