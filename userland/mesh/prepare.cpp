@@ -60,22 +60,16 @@ Bounds used_bounds(const Soup& soup)
     return bounds_of(used);
 }
 
-/// File units to mm, then the fit.
-Status to_millimetres(Soup& soup, const PrepareOptions& options, const std::string& name)
+/// Scales the longest side to fit_mm and centres it at the origin.
+Status fit(Soup& soup, double fit_mm, const std::string& name)
 {
-    if (options.scale != 1.0) {
-        for (Vec3& vertex : soup.vertices)
-            vertex = scaled(vertex, options.scale);
-    }
-    if (options.fit_mm <= 0)
-        return success();
     const Bounds bounds = used_bounds(soup);
     if (!(bounds.extent() > 0))
         return Error{name, "has no extent, so it cannot be fitted to a size", "leave out --fit"};
-    const double factor = options.fit_mm / bounds.extent();
+    const double factor = fit_mm / bounds.extent();
     const Vec3 centre = scaled(add(bounds.low, bounds.high), 0.5);
     // Already fitted: leave every bit as it is.
-    if (std::abs(factor - 1.0) < 1e-14 && length(centre) < 1e-12 * options.fit_mm)
+    if (std::abs(factor - 1.0) < 1e-14 && length(centre) < 1e-12 * fit_mm)
         return success();
     for (Vec3& vertex : soup.vertices)
         vertex = scaled(subtract(vertex, centre), factor);
@@ -89,6 +83,12 @@ void agree_on_sense(Soup& soup, Report& report)
     drop_duplicates(soup, report);
     while (orient(soup, report) > 0 && drop_duplicates(soup, report) > 0) {
     }
+}
+
+Error no_usable_face(const Report& report, const std::string& name)
+{
+    return Error{name, fmt::format("has no usable face: {} without area, {} not finite, of {}",
+                                   report.faces_zero_area, report.faces_nonfinite, report.faces_read)};
 }
 
 } // namespace
@@ -107,11 +107,19 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     report.vertices_read = soup.vertices.size();
     report.faces_read = soup.faces.size();
     progress(0);
-    if (const auto status = to_millimetres(soup, options, name); !status)
-        return status.error();
+    for (Vec3& vertex : soup.vertices)
+        vertex = scaled(vertex, options.scale);
+    // Before the fit: what will be dropped must not count for the size.
+    if (options.full)
+        drop_degenerate(soup, report);
+    if (soup.faces.empty())
+        return no_usable_face(report, name);
+    if (options.fit_mm > 0) {
+        if (const auto status = fit(soup, options.fit_mm, name); !status)
+            return status.error();
+    }
 
     if (options.full) {
-        drop_degenerate(soup, report);
         weld(soup, options.weld_mm, report);
         drop_degenerate(soup, report);
         progress(0.3);
@@ -121,10 +129,9 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
             if (const auto status = split_long_edges(soup, options.split_mm, name, report); !status)
                 return status.error();
         }
+        if (soup.faces.empty())
+            return no_usable_face(report, name);
     }
-    if (soup.faces.empty())
-        return Error{name, fmt::format("has no usable face: {} without area, {} not finite, of {}",
-                                       report.faces_zero_area, report.faces_nonfinite, report.faces_read)};
     Mesh mesh;
     mesh.neighbours = neighbours_of(soup, report);
     progress(0.8);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include <array>
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <optional>
@@ -45,6 +45,7 @@ class Words {
 
 struct Header {
     std::uint64_t vertices = 0, faces = 0;
+    std::size_t body = 0; ///< first byte after the counts
 };
 
 std::optional<std::uint64_t> whole_number(std::string_view word)
@@ -83,7 +84,21 @@ Result<Header> header_of(std::string& bytes, const std::string& name)
         return Error{line, fmt::format("promises {} vertices and {} faces, more than {} bytes can hold "
                                        "(truncated, or a false header)",
                                        *vertices, *faces, bytes.size())};
-    return Header{*vertices, *faces};
+    return Header{*vertices, *faces, words.end()};
+}
+
+/// Lines with something on them that is no comment.
+std::uint64_t data_lines(const std::string& bytes, std::size_t at)
+{
+    std::uint64_t lines = 0;
+    for (; at < bytes.size(); ++at) {
+        at = bytes.find_first_not_of(" \t\r\n", at);
+        if (at == std::string::npos)
+            break;
+        lines += bytes[at] != '#';
+        at = std::min(bytes.find('\n', at), bytes.size());
+    }
+    return lines;
 }
 
 } // namespace
@@ -102,13 +117,13 @@ Result<PolygonSoup> read_off(std::string& bytes, const std::string& name)
     PolygonSoup soup;
     if (!cgal_read_off(stream, soup)) {
         const std::size_t stopped = buffer.position();
-        if (stopped >= bytes.size())
+        if (data_lines(bytes, header->body) < header->vertices + header->faces)
             return Error{name,
                          fmt::format("ends early (truncated) at byte {}: the header promises {} vertices "
                                      "and {} faces, one a line",
                                      bytes.size(), header->vertices, header->faces)};
         // The reader has taken the offending line whole.
-        return Error{fmt::format("{}:{}", name, line_of(bytes, stopped - 1)),
+        return Error{fmt::format("{}:{}", name, line_of(bytes, std::max<std::size_t>(stopped, 1) - 1)),
                      fmt::format("expected a vertex \"X Y Z\" or a face \"N I1 ... IN\" with 0 <= I < {}",
                                  header->vertices)};
     }

@@ -11,8 +11,10 @@ namespace phantom::scene {
 
 void Faults::add(const toml::source_region& at, std::string what)
 {
-    if (!first_)
-        first_ = Error{where(at), std::move(what)};
+    if (first_ && at.begin.line >= line_)
+        return;
+    first_ = Error{where(at), std::move(what)};
+    line_ = at.begin.line;
 }
 
 std::string Faults::where(const toml::source_region& at) const

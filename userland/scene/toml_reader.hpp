@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One TOML table, read key by key: type, range and spelling are checked, and the first fault is kept with
-// its line. Private to the scene unit: includes toml++.
+// One TOML table, read key by key: type, range and spelling are checked, and the fault nearest to the
+// top of the file is kept with its line. Private to the scene unit: includes toml++.
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -16,7 +17,7 @@
 
 namespace phantom::scene {
 
-/// Where faults of one file go; the first counts.
+/// Where faults of one file go; the one nearest to the top counts.
 class Faults {
   public:
     explicit Faults(std::string file) : file_(std::move(file)) {}
@@ -27,6 +28,7 @@ class Faults {
   private:
     std::string file_;
     std::optional<Error> first_;
+    std::uint32_t line_ = 0; ///< of first_
 };
 
 /// A view of a table; every getter returns nullopt when the key is absent or at fault (then in Faults).
