@@ -16,11 +16,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Hits a query makes room for beyond those it must keep, before it sorts some out.
 constexpr std::size_t spare_hits = 128;
 
-double square_up(double x)
-{
-    return x * x * (1 + 0x1p-50);
-}
-
 } // namespace
 
 bool valid_query(const Point& p, double radius)
@@ -30,7 +25,7 @@ bool valid_query(const Point& p, double radius)
 }
 
 NearestCollector::NearestCollector(Nearest& out, std::size_t count, double max_radius)
-    : out_(out), count_(count), max_radius_(max_radius), kept_limit2_(infinity)
+    : out_(out), count_(count), max_radius_(max_radius), kept_limit_(infinity)
 {
     out_.clear();
     sink_.full = make_room;
@@ -40,21 +35,13 @@ NearestCollector::NearestCollector(Nearest& out, std::size_t count, double max_r
 Sink& NearestCollector::open(double distance_error)
 {
     error_ = std::max(error_, distance_error);
-    sink_.limit2 = std::min(square_up(max_radius_ + distance_error), kept_limit2_);
+    sink_.limit = std::min(max_radius_ + distance_error, kept_limit_);
     return sink_;
 }
 
-double NearestCollector::limit2() const
+double NearestCollector::limit() const
 {
-    return std::min(square_up(max_radius_), kept_limit2_);
-}
-
-/// Reduces the hits to the `wanted` nearest; the last of them is then the farthest.
-void NearestCollector::keep_nearest(std::size_t wanted)
-{
-    select_nearest({sink_.hits, sink_.size}, wanted);
-    sink_.size = wanted;
-    kept_limit2_ = sink_.hits[wanted - 1].distance;
+    return std::min(max_radius_, kept_limit_);
 }
 
 void NearestCollector::make_room(Sink& sink)
@@ -64,8 +51,10 @@ void NearestCollector::make_room(Sink& sink)
     const bool bounded = self.count_ < std::numeric_limits<std::uint32_t>::max();
     const std::size_t wanted = bounded ? self.count_ + 1 : std::numeric_limits<std::size_t>::max();
     if (sink.size > wanted) {
-        self.keep_nearest(wanted);
-        sink.limit2 = std::min(sink.limit2, self.kept_limit2_);
+        select_nearest({sink.hits, sink.size}, wanted);
+        sink.size = wanted;
+        self.kept_limit_ = sink.hits[wanted - 1].distance;
+        sink.limit = std::min(sink.limit, self.kept_limit_);
     }
     if (sink.size + spare_hits / 2 <= sink.capacity)
         return;
@@ -77,20 +66,14 @@ void NearestCollector::make_room(Sink& sink)
 
 void NearestCollector::finish()
 {
-    double covered = max_radius_;
-    if (sink_.size > count_) {
-        keep_nearest(count_ + 1);
-        const Hit& left_out = sink_.hits[count_];
-        // The error bound has room for the rounding of the square root and the difference.
-        covered = std::clamp(std::sqrt(left_out.distance) - error_, 0.0, max_radius_);
-        sink_.size = count_;
+    const bool bounded = count_ < sink_.size;
+    sort_nearest({sink_.hits, sink_.size}, bounded ? count_ + 1 : sink_.size, out_.hits);
+    out_.coverage = max_radius_;
+    if (bounded) {
+        // The error bound has room for the rounding of the difference.
+        out_.coverage = std::clamp(out_.hits.back().distance - error_, 0.0, max_radius_);
+        out_.hits.pop_back();
     }
-    const std::span<Hit> found(sink_.hits, sink_.size);
-    for (Hit& hit : found)
-        hit.distance = std::sqrt(hit.distance);
-    out_.hits.resize(found.size());
-    sort_into(found, out_.hits);
-    out_.coverage = covered;
     out_.counts = sink_.counts;
 }
 
@@ -103,7 +86,7 @@ WithinCollector::WithinCollector(std::vector<Hit>& out, double radius) : out_(ou
 
 Sink& WithinCollector::open(double distance_error)
 {
-    sink_.limit2 = square_up(radius_ + distance_error);
+    sink_.limit = radius_ + distance_error;
     return sink_;
 }
 
@@ -117,8 +100,6 @@ void WithinCollector::make_room(Sink& sink)
 
 void WithinCollector::finish()
 {
-    for (std::size_t i = 0; i < sink_.size; i++)
-        sink_.hits[i].distance = std::sqrt(sink_.hits[i].distance);
     out_.resize(sink_.size);
 }
 

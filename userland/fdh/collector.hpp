@@ -15,21 +15,20 @@ class NearestCollector {
     /// Before each tree: searches to max_radius plus the tree's error bound for this query point, or to
     /// the farthest that may still be wanted.
     Sink& open(double distance_error);
-    /// Square of the distance beyond which no true distance is of interest.
-    [[nodiscard]] double limit2() const;
+    /// Distance beyond which no triangle is of interest.
+    [[nodiscard]] double limit() const;
     /// Sorts, cuts to `count` and computes the coverage. The collector is done then.
     void finish();
 
   private:
     static void make_room(Sink& sink);
-    void keep_nearest(std::size_t wanted);
 
     Nearest& out_;
     Sink sink_;
     std::size_t count_;
     double max_radius_;
-    double error_ = 0;   ///< largest distance_error of the trees searched
-    double kept_limit2_; ///< no hit beyond this is wanted: the farthest of count + 1 found so far
+    double error_ = 0;  ///< largest distance_error of the trees searched
+    double kept_limit_; ///< no hit beyond this is wanted: the farthest of count + 1 found so far
 };
 
 /// All within a radius.
@@ -39,7 +38,7 @@ class WithinCollector {
     WithinCollector(const WithinCollector&) = delete;
 
     Sink& open(double distance_error);
-    [[nodiscard]] double limit2() const { return radius_ * radius_; }
+    [[nodiscard]] double limit() const { return radius_; }
     void finish();
 
   private:

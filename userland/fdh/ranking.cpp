@@ -20,20 +20,29 @@ class Buckets {
 
     explicit Buckets(std::span<const Hit> hits)
     {
-        double low = hits[0].distance, high = low;
-        for (const Hit& hit : hits) {
-            low = std::min(low, hit.distance);
-            high = std::max(high, hit.distance);
+        // Several at a time: one chain of minima would wait for itself.
+        constexpr std::size_t chains = 4;
+        double low[chains], high[chains];
+        std::fill(low, low + chains, hits[0].distance);
+        std::fill(high, high + chains, hits[0].distance);
+        for (std::size_t i = 0; i < hits.size(); i++) {
+            low[i % chains] = std::min(low[i % chains], hits[i].distance);
+            high[i % chains] = std::max(high[i % chains], hits[i].distance);
         }
-        low_ = low;
-        scale_ = (count - 1) / (high - low);
+        const double lowest = *std::min_element(low, low + chains),
+                     highest = *std::max_element(high, high + chains);
+        low2_ = lowest * lowest;
+        scale_ = (count - 1) / (highest * highest - low2_);
     }
     /// False if all are equally far, or too nearly so to tell apart by scaling.
     [[nodiscard]] bool useful() const { return scale_ < std::numeric_limits<double>::max(); }
-    [[nodiscard]] int of(const Hit& hit) const { return static_cast<int>((hit.distance - low_) * scale_); }
+    [[nodiscard]] int of(const Hit& hit) const
+    {
+        return static_cast<int>((hit.distance * hit.distance - low2_) * scale_);
+    }
 
   private:
-    double low_, scale_;
+    double low2_, scale_;
 };
 
 /// Sorts what is nearly in order.
@@ -75,32 +84,48 @@ void select_nearest(std::span<Hit> hits, std::size_t wanted)
     by_comparison({inner, border}, wanted - before);
 }
 
-void sort_into(std::span<const Hit> from, std::span<Hit> to)
+void sort_nearest(std::span<const Hit> hits, std::size_t wanted, std::vector<Hit>& sorted)
 {
-    if (from.empty())
-        return;
-    const Buckets buckets(from);
-    if (from.size() < worth_dealing || !buckets.useful()) {
-        std::copy(from.begin(), from.end(), to.begin());
-        std::sort(to.begin(), to.end(), nearer);
+    wanted = std::min(wanted, hits.size());
+    if (wanted == 0) {
+        sorted.clear();
         return;
     }
-    std::uint32_t place[Buckets::count + 1] = {};
-    for (const Hit& hit : from)
-        place[buckets.of(hit) + 1]++;
+    const Buckets buckets(hits);
+    if (hits.size() < worth_dealing || !buckets.useful()) {
+        sorted.assign(hits.begin(), hits.end());
+        std::partial_sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(wanted), sorted.end(),
+                          nearer);
+        sorted.resize(wanted);
+        return;
+    }
+    std::uint32_t place[Buckets::count] = {};
+    for (const Hit& hit : hits)
+        place[buckets.of(hit)]++;
     constexpr std::uint32_t crowded = 16;
-    bool any_crowded = false;
-    for (int b = 0; b < Buckets::count; b++) {
-        any_crowded |= place[b + 1] > crowded;
-        place[b + 1] += place[b];
+    std::uint32_t largest = 0, taken = 0;
+    int end = 0; // of the buckets that hold the wanted
+    for (; taken < wanted; end++) {
+        const std::uint32_t members = place[end];
+        place[end] = taken;
+        taken += members;
+        largest = std::max(largest, members);
     }
-    for (const Hit& hit : from)
-        to[place[buckets.of(hit)]++] = hit;
-    if (any_crowded)
-        for (int b = 0, begin = 0; b < Buckets::count; begin = static_cast<int>(place[b++]))
-            std::sort(to.begin() + begin, to.begin() + place[b], nearer);
-    else
-        insertion_sort(to);
+    sorted.resize(taken);
+    for (const Hit& hit : hits)
+        if (const int b = buckets.of(hit); b < end)
+            sorted[place[b]++] = hit;
+    if (largest > crowded) {
+        auto begin = sorted.begin();
+        for (int b = 0; b < end; b++) {
+            const auto next = sorted.begin() + place[b];
+            std::sort(begin, next, nearer);
+            begin = next;
+        }
+    } else {
+        insertion_sort(sorted);
+    }
+    sorted.resize(wanted);
 }
 
 } // namespace phantom::fdh

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Order among hits: by (distance, object, triangle). Squared distances round a point on a surface are about
-// evenly spread, so hits are dealt into buckets by their value, and only within a bucket compared: a sort of
-// 64 by comparison alone would take longer than the search.
+// Order among hits: by (distance, object, triangle). The squared distances of triangles round a point on a
+// surface are about evenly spread, so hits are dealt into buckets by them, and compared only within a bucket:
+// a sort of 64 by comparison alone would take longer than the search.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "fdh/query.hpp"
 
@@ -22,7 +23,7 @@ inline bool nearer(const Hit& a, const Hit& b)
 /// others in any order.
 void select_nearest(std::span<Hit> hits, std::size_t wanted);
 
-/// Copies in order. `to` has the same size as `from` and does not overlap it.
-void sort_into(std::span<const Hit> from, std::span<Hit> to);
+/// The `wanted` nearest in order, or all if there are fewer. `sorted` may not be what `hits` looks into.
+void sort_nearest(std::span<const Hit> hits, std::size_t wanted, std::vector<Hit>& sorted);
 
 } // namespace phantom::fdh

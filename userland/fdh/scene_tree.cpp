@@ -106,8 +106,11 @@ void SceneTree<K>::Impl::collect(const Point& p, Collector& collector) const
         std::uint32_t child;
     };
     const auto point = project<K>(grid.to_steps(p));
-    const double step2 = grid.step * grid.step;
-    float limit = search_limit(collector.limit2() / step2);
+    auto hull_limit = [&] {
+        const double steps = collector.limit() / grid.step;
+        return search_limit(steps * steps);
+    };
+    float limit = hull_limit();
     Waiting stack[stack_size];
     int top = 0;
     stack[top++] = {0, 0};
@@ -118,7 +121,7 @@ void SceneTree<K>::Impl::collect(const Point& p, Collector& collector) const
         if (next.child & leaf_flag) {
             const std::uint32_t object = next.child & ~leaf_flag;
             objects[object].tree.impl_->collect(to_local(objects[object].pose, p), object, collector);
-            limit = search_limit(collector.limit2() / step2);
+            limit = hull_limit();
             continue;
         }
         float bound2[lanes];

@@ -13,11 +13,11 @@ namespace phantom::fdh {
 
 /// Where a search puts what it finds. Plain data: it crosses into units compiled for other instruction sets.
 struct Sink {
-    Hit* hits = nullptr; ///< `distance` holds the square, mesh unit
+    Hit* hits = nullptr;
     std::size_t size = 0;
     std::size_t capacity = 0;
-    double limit2 = 0; ///< square of the distance beyond which nothing is wanted; may shrink in `full`
-    /// Called when fewer than `lanes` places are left; makes room, and may shrink limit2.
+    double limit = 0; ///< distance beyond which nothing is wanted; may shrink in `full`
+    /// Called when fewer than `lanes` places are left; makes room, and may shrink the limit.
     void (*full)(Sink&) = nullptr;
     void* owner = nullptr;
     QueryCounts counts;
@@ -46,8 +46,8 @@ struct SearchQuery {
 
 template <int K>
 struct SearchKernels {
-    /// Every triangle of the tree with distance² <= sink.limit2 that is not surely farther than the limit
-    /// by the time it is reached; near ones first, roughly.
+    /// Every triangle of the tree that is within sink.limit (which may shrink on the way) of the point, and
+    /// perhaps a few at the limit's rounding beyond; near ones first, roughly.
     void (*search)(const Node<K>* nodes, const Leaf* leaves, const SearchQuery<K>& query, Sink& sink);
     /// Lower bounds of the squared distance [steps²] from the point to each child; +inf for unused lanes.
     void (*bounds)(const Node<K>& node, const ProjectedPoint<K>& point, float (&distance2)[lanes]);

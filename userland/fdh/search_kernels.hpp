@@ -158,24 +158,35 @@ struct Search {
         return top;
     }
 
+    /// In steps, rounded up.
+    static double squared_limit(const Sink& sink, const SearchQuery<K>& query)
+    {
+        const double limit = sink.limit / query.step;
+        return limit * limit * (1 + 0x1p-50);
+    }
+
     /// Tests a leaf's triangles; true if the sink's limit may have changed.
     static bool visit(const Leaf& leaf, const SearchQuery<K>& query, const typename Distance::Vector& point,
-                      double limit2, double step2, Sink& sink)
+                      double limit2, Sink& sink)
     {
         using V = typename S::Double;
         const bool made_room = sink.size + lanes > sink.capacity;
         if (made_room)
             sink.full(sink);
         for (int lane = 0; lane < lanes; lane += S::double_width) {
-            const V d = Distance::squared(leaf, lane, point);
-            unsigned mask = S::bits(d <= limit2);
+            const V d2 = Distance::squared(leaf, lane, point);
+            const unsigned mask = S::bits(d2 <= limit2);
+            if (mask == 0)
+                continue;
             sink.counts.triangles += static_cast<unsigned>(__builtin_popcount(mask));
-            for (; mask; mask &= mask - 1) {
-                const int i = __builtin_ctz(mask);
-                Hit& hit = sink.hits[sink.size++];
+            const V distance = S::sqrt(d2) * query.step;
+            // Every lane is written and the next hit overwrites those that are none: no branch to mispredict.
+            for (int i = 0; i < S::double_width; i++) {
+                Hit& hit = sink.hits[sink.size];
                 hit.object = query.object;
                 hit.triangle = leaf.triangle[lane + i];
-                hit.distance = d[i] * step2;
+                hit.distance = distance[i];
+                sink.size += mask >> i & 1;
             }
         }
         return made_room;
@@ -187,8 +198,7 @@ struct Search {
         const V zero{};
         const double* p = reinterpret_cast<const double*>(&query.point);
         const typename Distance::Vector point = {zero + p[0], zero + p[1], zero + p[2]};
-        const double step2 = query.step * query.step;
-        double limit2 = sink.limit2 / step2;
+        double limit2 = squared_limit(sink, query);
         float hull_limit = search_limit(limit2);
         Waiting stack[stack_size];
         int top = 0;
@@ -196,8 +206,8 @@ struct Search {
         for (;;) {
             if (current & leaf_flag) {
                 sink.counts.leaves++;
-                if (visit(leaves[current & ~leaf_flag], query, point, limit2, step2, sink)) {
-                    limit2 = sink.limit2 / step2;
+                if (visit(leaves[current & ~leaf_flag], query, point, limit2, sink)) {
+                    limit2 = squared_limit(sink, query);
                     hull_limit = search_limit(limit2);
                 }
             } else {

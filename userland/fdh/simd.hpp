@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Vectors as GCC and Clang know them, and the three operations the language lacks: minimum, maximum, and the
-// lanes of a comparison as bits. Included only by the search units, each compiled for its instruction set;
-// everything is a template over that set, so no code compiled for one can be linked into another.
+// Vectors as GCC and Clang know them, and the operations the language lacks: minimum, maximum, square root,
+// and the lanes of a comparison as bits. Included only by the search units, each compiled for its instruction
+// set; everything is a template over that set, so no code compiled for one can be linked into another.
 #pragma once
 
 #if defined(__SSE2__)
@@ -84,6 +84,25 @@ struct Simd {
             return V(_mm512_maskz_max_pd(0xff, __m512d(a), __m512d(b)));
 #endif
         return a > b ? a : b;
+    }
+
+    static Double sqrt(Double a)
+    {
+#if defined(__SSE2__)
+        if constexpr (I == Isa::sse2)
+            return Double(_mm_sqrt_pd(__m128d(a)));
+#endif
+#if defined(__AVX2__)
+        if constexpr (I == Isa::avx2)
+            return Double(_mm256_sqrt_pd(__m256d(a)));
+#endif
+#if defined(__AVX512F__)
+        if constexpr (I == Isa::avx512)
+            return Double(_mm512_maskz_sqrt_pd(0xff, __m512d(a)));
+#endif
+        for (int i = 0; i < double_width; i++)
+            a[i] = __builtin_sqrt(a[i]);
+        return a;
     }
 
     /// Bit i set where lane i of a comparison is true.
