@@ -35,7 +35,8 @@ test: ## every test that needs no VM and no root, also under ASan and UBSan
 
 modules: ## build/modules/RELEASE/phantom_rt.ko for Debian's RT kernels, or KDIR=/path/to/headers
 	@tools/bootstrap modules
-	@$(MAKE) --no-print-directory -C kmod modules
+	@$(if $(KDIR),,tools/kernel-headers)
+	@$(MAKE) --no-print-directory -C kmod modules $(if $(KDIR),KDIR=$(KDIR))
 
 install: all ## programs and scenes to PREFIX (/usr/local)
 	@cmake --install $(RELEASE) --prefix $(or $(PREFIX),/usr/local)
