@@ -17,7 +17,8 @@ constexpr double degree = std::numbers::pi / 180;
 
 } // namespace
 
-void frame_all(vtkRenderer* renderer, std::span<const Vec3> points, const CameraAngles& angles, double aspect)
+void frame_all(vtkRenderer* renderer, std::span<const Vec3> points, const CameraAngles& angles,
+               const Room& room)
 {
     const Vec3 back = angles.direction();
     const Vec3 right = unit_or(cross({0, 1, 0}, back), {1, 0, 0});
@@ -38,7 +39,10 @@ void frame_all(vtkRenderer* renderer, std::span<const Vec3> points, const Camera
         focus = focus + 0.5 * (low[i] + high[i]) * axes[i];
 
     // Each point must lie inside the lens' pyramid: |y| <= (distance - depth) tan(angle / 2).
-    const double slope_y = std::tan(0.5 * view_angle_deg * degree), slope_x = slope_y * aspect;
+    // The pyramid of the room that is left is lower than the viewport's.
+    const double free_height = std::max(room.height - room.header - room.footer, 0.25 * room.height);
+    const double slope = std::tan(0.5 * view_angle_deg * degree);
+    const double slope_y = slope * free_height / room.height, slope_x = slope * room.width / room.height;
     double distance = 1e-3;
     for (const Vec3& point : points) {
         const Vec3 at = point - focus;
@@ -52,6 +56,8 @@ void frame_all(vtkRenderer* renderer, std::span<const Vec3> points, const Camera
     camera->SetFocalPoint(focus.data());
     camera->SetPosition(position.data());
     camera->SetViewUp(0, 1, 0);
+    // In units of half the viewport; the focus goes to the middle of the free part.
+    camera->SetWindowCenter(0, (room.header - room.footer) / room.height);
 }
 
 void frame_spot(vtkRenderer* renderer, const Vec3& centre, const Vec3& normal, const Vec3& towards_viewer,

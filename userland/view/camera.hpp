@@ -11,10 +11,14 @@
 
 namespace phantom::view {
 
-/// Places the camera so that the points fill the renderer's viewport with a small margin.
-/// Aspect: width / height of the viewport.
+/// A viewport in pixels, and what words take of it above and below.
+struct Room {
+    double width = 1, height = 1, header = 0, footer = 0;
+};
+
+/// Places the camera so that the points fill the room that is left, with a small margin.
 void frame_all(vtkRenderer* renderer, std::span<const Vec3> points, const CameraAngles& angles,
-               double aspect);
+               const Room& room);
 
 /// A close-up of a spot on the surface from its side, normal upward: parallel projection, so that
 /// one scale bar holds everywhere. half_height_mm: from the picture's middle to its upper edge.

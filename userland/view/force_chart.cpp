@@ -98,12 +98,12 @@ ForceChart::ForceChart(vtkRenderer* renderer, Lines lines) : lines_(lines)
     marker_->AddColumn(column("shown"));
 
     style_axis(chart_->GetAxis(vtkAxis::BOTTOM), "time, s");
-    style_axis(chart_->GetAxis(vtkAxis::LEFT), lines == Lines::norm ? "|F|, N" : "force, N");
-    add_line(1, palette::ink, 2.0F, "|F|");
+    style_axis(chart_->GetAxis(vtkAxis::LEFT), "force, N");
+    add_line(1, palette::ink, "magnitude");
     if (lines == Lines::norm_and_components) {
-        add_line(2, palette::component_x, 1.6F, "Fx");
-        add_line(3, palette::component_y, 1.6F, "Fy");
-        add_line(4, palette::component_z, 1.6F, "Fz");
+        add_line(2, palette::component_x, "x");
+        add_line(3, palette::component_y, "y");
+        add_line(4, palette::component_z, "z");
         chart_->SetShowLegend(true);
         vtkChartLegend* legend = chart_->GetLegend();
         legend->SetHorizontalAlignment(vtkChartLegend::RIGHT);
@@ -115,7 +115,6 @@ ForceChart::ForceChart(vtkRenderer* renderer, Lines lines) : lines_(lines)
     vtkPlot* marker = chart_->AddPlot(vtkChart::LINE);
     marker->SetInputData(marker_, 0, 1);
     set_colour(marker, palette::force);
-    marker->SetWidth(1.6F);
     marker->GetPen()->SetLineType(vtkPen::DASH_LINE);
     marker->SetLegendVisibility(false);
 
@@ -125,22 +124,31 @@ ForceChart::ForceChart(vtkRenderer* renderer, Lines lines) : lines_(lines)
     renderer->AddActor(actor_);
 }
 
-void ForceChart::add_line(int column, const std::array<double, 3>& colour, float width, const char* name)
+void ForceChart::add_line(int column, const Colour& colour, const char* name)
 {
     vtkPlot* line = chart_->AddPlot(vtkChart::LINE);
     line->SetInputData(table_, 0, column);
     set_colour(line, colour);
-    line->SetWidth(width);
     line->SetLabel(name);
 }
 
-void ForceChart::set_font_size(int pixels)
+void ForceChart::set_scale(int font_px, double line_px)
 {
+    const auto width = static_cast<float>(line_px);
     for (const int place : {vtkAxis::BOTTOM, vtkAxis::LEFT}) {
-        chart_->GetAxis(place)->GetTitleProperties()->SetFontSize(pixels);
-        chart_->GetAxis(place)->GetLabelProperties()->SetFontSize(pixels);
+        vtkAxis* axis = chart_->GetAxis(place);
+        axis->GetTitleProperties()->SetFontSize(font_px);
+        axis->GetLabelProperties()->SetFontSize(font_px);
+        axis->GetPen()->SetWidth(width);
+        axis->GetGridPen()->SetWidth(width);
+        axis->SetTickLength(4 * width);
     }
-    chart_->GetLegend()->GetLabelProperties()->SetFontSize(pixels);
+    vtkChartLegend* legend = chart_->GetLegend();
+    legend->GetLabelProperties()->SetFontSize(font_px);
+    legend->SetSymbolWidth(static_cast<int>(2 * font_px));
+    legend->SetPadding(font_px / 3);
+    for (vtkIdType i = 0; i < chart_->GetNumberOfPlots(); ++i)
+        chart_->GetPlot(i)->SetWidth((i == 0 ? 1.8F : 1.5F) * width);
 }
 
 void ForceChart::set_size(int width, int height)

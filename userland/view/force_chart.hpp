@@ -12,6 +12,7 @@
 #include <vtkRenderer.h>
 #include <vtkTable.h>
 
+#include "view/colour.hpp"
 #include "view/touch.hpp"
 
 namespace phantom::view {
@@ -21,8 +22,9 @@ class ForceChart {
     enum class Lines { norm, norm_and_components };
     ForceChart(vtkRenderer* renderer, Lines lines);
 
-    void set_font_size(int pixels);
-    /// Width of the renderer's viewport; the chart fills it.
+    /// Size of words and width of thin lines, in pixels.
+    void set_scale(int font_px, double line_px);
+    /// Size of the renderer's viewport in pixels; the chart fills it.
     void set_size(int width, int height);
     /// Draws the samples (times ascending) over [from_s, to_s]; full_scale_n: the least height of the axis.
     void show(const std::deque<Touch>& samples, double from_s, double to_s, double full_scale_n);
@@ -30,7 +32,7 @@ class ForceChart {
     void mark(std::optional<double> time_s);
 
   private:
-    void add_line(int column, const std::array<double, 3>& colour, float width, const char* name);
+    void add_line(int column, const Colour& colour, const char* name);
 
     Lines lines_;
     vtkNew<vtkChartXY> chart_;

@@ -5,6 +5,7 @@
 
 #include "device/device.hpp"
 #include "view/history.hpp"
+#include "view/scene_words.hpp"
 
 namespace phantom::view {
 
@@ -42,7 +43,7 @@ Panel live_panel(const scene::Scene& scene, const phantom_status& status, const 
                               : 0;
     Panel panel;
     panel.title = scene.file.filename().string();
-    panel.subtitle = fmt::format("{} triangles", scene.triangles());
+    panel.subtitle = scene_size_text(scene);
     panel.rows = {
         state_row(status, switched_off),
         {"rate", fmt::format("{} Hz", status.rate_hz)},
@@ -51,7 +52,7 @@ Panel live_panel(const scene::Scene& scene, const phantom_status& status, const 
         {"set", fmt::format("{} patches, {:.1f} ms old", status.set_patches, age_ms)},
         {"coverage", fmt::format("{:.2f} mm", fed.coverage_mm)},
         {"contacts", fmt::format("{}{}", touch.contacts, touch.inside ? ", held by the proxy" : "")},
-        {"|F|", fmt::format("{:.2f} N", touch.force_norm_n())},
+        {"force", fmt::format("{:.2f} N", touch.force_norm_n())},
     };
     if (!message.empty())
         panel.hints.push_back(message);

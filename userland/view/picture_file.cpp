@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "view/stage.hpp"
+#include "view/picture_file.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -8,20 +8,26 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <vtkImageShrink3D.h>
+#include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
 namespace phantom::view {
 
-Status save_window(vtkRenderWindow* window, const std::filesystem::path& file)
+Status save_window(vtkRenderWindow* window, const std::filesystem::path& file, int shrink)
 {
     vtkNew<vtkWindowToImageFilter> pixels;
     pixels->SetInput(window);
     pixels->SetInputBufferTypeToRGB();
     pixels->ReadFrontBufferOff();
+    vtkNew<vtkImageShrink3D> smaller;
+    smaller->SetInputConnection(pixels->GetOutputPort());
+    smaller->SetShrinkFactors(shrink, shrink, 1);
+    smaller->MeanOn();
     vtkNew<vtkPNGWriter> png;
-    png->SetInputConnection(pixels->GetOutputPort());
+    png->SetInputConnection(smaller->GetOutputPort());
     png->WriteToMemoryOn();
     png->Write();
     vtkUnsignedCharArray* bytes = png->GetResult();

@@ -61,8 +61,8 @@ ProbeActors::ProbeActors(vtkRenderer* renderer)
     mapper->SetInputConnection(arrow_shape_->GetOutputPort());
     arrow_->SetMapper(mapper);
     set_colour(arrow_->GetProperty(), palette::force);
-    arrow_->GetProperty()->SetAmbient(0.3);
-    arrow_->GetProperty()->SetDiffuse(0.7);
+    arrow_->GetProperty()->SetAmbient(0.5);
+    arrow_->GetProperty()->SetDiffuse(0.5);
 
     vtkNew<vtkLineSource> line;
     line->SetPoint1(0, 0, 0);
@@ -71,7 +71,6 @@ ProbeActors::ProbeActors(vtkRenderer* renderer)
     line_mapper->SetInputConnection(line->GetOutputPort());
     link_->SetMapper(line_mapper);
     set_colour(link_->GetProperty(), palette::proxy);
-    link_->GetProperty()->SetLineWidth(2);
     link_->GetProperty()->SetLighting(false);
 
     label_->GetPositionCoordinate()->SetCoordinateSystemToWorld();
@@ -89,9 +88,10 @@ ProbeActors::ProbeActors(vtkRenderer* renderer)
     renderer->AddActor2D(label_);
 }
 
-void ProbeActors::set_font_size(int pixels)
+void ProbeActors::set_scale(int font_px, double line_px)
 {
-    label_->GetTextProperty()->SetFontSize(pixels);
+    label_->GetTextProperty()->SetFontSize(font_px);
+    link_->GetProperty()->SetLineWidth(static_cast<float>(line_px));
 }
 
 void ProbeActors::show(const Touch& touch, const ProbeSizes& sizes)

@@ -25,7 +25,8 @@ class ProbeActors {
   public:
     explicit ProbeActors(vtkRenderer* renderer);
 
-    void set_font_size(int pixels);
+    /// Size of the label and width of the line between tip and proxy, in pixels.
+    void set_scale(int font_px, double line_px);
     void show(const Touch& touch, const ProbeSizes& sizes);
     /// Off: no label beside the arrow (the other renderer has it).
     void set_label_visible(bool visible) { label_wanted_ = visible; }

@@ -15,6 +15,12 @@
 
 namespace phantom::view {
 
+namespace {
+
+constexpr double lift_part = 0.03; ///< of the contact radius: no flicker, and not to be seen
+
+} // namespace
+
 SelectedTriangles::SelectedTriangles(const scene::Scene& scene) : scene_(scene)
 {
     show({});
@@ -24,9 +30,6 @@ void SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, double edg
 {
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(triangles_);
-    // They lie in the surface: draw them a hair nearer.
-    mapper->SetResolveCoincidentTopologyToPolygonOffset();
-    mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(-2, -2);
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
     vtkProperty* look = actor->GetProperty();
@@ -49,9 +52,13 @@ void SelectedTriangles::show(std::span<const fdh::Hit> hits)
         if (hit.object >= scene_.objects.size())
             continue;
         const scene::Object& object = scene_.objects[hit.object];
+        // They lie in the surface: draw them a hair above it.
+        const double lift_mm = lift_part * scene_.materials[object.material].radius_mm;
         faces->InsertNextCell(3);
-        for (const std::uint32_t vertex : object.mesh.faces.at(hit.triangle)) {
-            const Vec3 corner = to_world(object.pose, object.mesh.vertices[vertex]);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3& vertex = object.mesh.vertices[object.mesh.faces.at(hit.triangle)[i]];
+            const Vec3& normal = object.mesh.normals[object.mesh.face_normals[hit.triangle][i]];
+            const Vec3 corner = to_world(object.pose, vertex + lift_mm * normal);
             faces->InsertCellPoint(points->InsertNextPoint(corner.data()));
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The window and its four parts: the whole scene on the left with words in its corner; on the right
-// a close-up of the contact, and force over time below it.
+// The window and its parts: the whole scene on the left; on the right a close-up of the contact, figures,
+// and force over time.
 #pragma once
 
 #include <deque>
@@ -26,20 +26,21 @@
 
 namespace phantom::view {
 
-/// Words in the corner of the whole view.
+/// A line of the figures.
 struct PanelRow {
     std::string name, value;
     bool warning = false;
 };
 struct Panel {
     std::string title, subtitle;
-    std::vector<PanelRow> rows;
-    std::vector<std::string> hints; ///< lines at the lower edge
+    std::vector<PanelRow> rows;     ///< between close-up and chart
+    std::vector<std::string> hints; ///< lines at the lower edge, at most three
 };
 
 class Stage {
   public:
-    /// The scene must outlive the stage.
+    /// The scene must outlive the stage. Offscreen it draws at twice the size: save_png() then gives every
+    /// edge, letter and line four samples, whatever the OpenGL driver offers.
     Stage(const scene::Scene& scene, int width, int height, bool offscreen);
 
     [[nodiscard]] vtkRenderWindow* window() { return window_; }
@@ -70,17 +71,23 @@ class Stage {
         Vec3 centre{}, normal{0, 1, 0};
         double half_height_mm = 0; ///< 0: not looked yet
     };
-    void look();
     void arrange();
     void aim_spot(const Touch& touch, const Vec3& normal, double radius_mm, double blend);
     void size_probes(const Touch& touch, double radius_mm);
+    [[nodiscard]] double header_px() const;
+    [[nodiscard]] double footer_px() const;
     void draw_whole_overlay();
+    void draw_column();
     void draw_colour_bar();
     void draw_region_marker();
-    void draw_spot_overlay(double radius_mm, bool apart);
+    void draw_legend(double x, double y, double width);
+    void draw_spot_overlay();
+    /// A font size in pixels of this window, and a length given for a window 800 pixels high.
     [[nodiscard]] int font(double factor = 1) const;
+    [[nodiscard]] double px(double at_800) const;
 
     const scene::Scene& scene_;
+    int oversampling_;
     SceneActors surfaces_;
     vtkNew<vtkRenderWindow> window_;
     vtkNew<vtkRenderer> base_, whole_, spot_, graph_;
@@ -89,17 +96,18 @@ class Stage {
     ForceChart chart_;
     FlatShapes base_shapes_, whole_shapes_, spot_shapes_;
 
+    /// A rectangle of the window in pixels, from its lower left.
+    struct Box {
+        double x = 0, y = 0, width = 0, height = 0;
+    };
     std::array<int, 2> arranged_{0, 0}; ///< window size that the layout was made for
-    std::array<int, 2> whole_px_{}, spot_px_{};
-    CameraAngles angles_;
+    std::size_t arranged_rows_ = 0;     ///< and the number of figures
+    Box whole_box_, spot_box_, column_box_;
     Spot looked_;
     Panel panel_;
     Touch touch_;
     double extent_mm_ = 1, full_scale_n_ = 1, radius_mm_ = 1;
     std::optional<double> colour_bar_n_;
 };
-
-/// Renders the window and writes it as PNG: to a temporary file beside it, then renamed.
-Status save_window(vtkRenderWindow* window, const std::filesystem::path& file);
 
 } // namespace phantom::view

@@ -12,6 +12,7 @@
 
 #include "view/chart_picture.hpp"
 #include "view/path_actors.hpp"
+#include "view/scene_words.hpp"
 #include "view/stage.hpp"
 #include "view/trace.hpp"
 
@@ -58,18 +59,15 @@ Result<Moment> moment_of(const Trace& trace, const Options& options, const scene
 
 Panel panel_of(const scene::Scene& scene, const Trace& trace, const Moment& moment)
 {
-    const auto bounds = scene.bounds();
-    const Vec3 size = bounds.high - bounds.low;
     const Touch& touch = moment.touch;
     Panel panel;
     panel.title = scene.file.filename().string();
-    panel.subtitle = fmt::format("{} triangles, {:.0f} x {:.0f} x {:.0f} mm", scene.triangles(), size[0],
-                                 size[1], size[2]);
+    panel.subtitle = scene_size_text(scene);
     panel.rows = {
         {"trace", fmt::format("{} ticks, {:.2f} s", trace.rows.size(),
                               trace.rows.back().time_s - trace.rows.front().time_s)},
         {"shown", fmt::format("t = {:.3f} s", touch.time_s)},
-        {"|F|", fmt::format("{:.3f} N", touch.force_norm_n())},
+        {"force", fmt::format("{:.3f} N", touch.force_norm_n())},
         {"contacts", fmt::format("{}{}", touch.contacts, touch.inside ? ", held by the proxy" : "")},
     };
     return panel;
