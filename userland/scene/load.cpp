@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include <cmath>
-#include <map>
-
 #include <fmt/format.h>
 
 #include "mesh/read.hpp"
@@ -96,6 +93,12 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
 {
     if (const auto status = check_options(options); !status)
         return status.error();
+    std::error_code ignored;
+    if (!is_scene_file(file) && !mesh::is_mesh_file(file) && std::filesystem::is_regular_file(file, ignored))
+        return Error{file.string(),
+                     fmt::format("unknown extension \"{}\", expected a scene file .toml or a mesh "
+                                 ".ply, .obj, .stl or .off",
+                                 file.extension().string())};
     auto entries = is_scene_file(file) ? read_scene_file(file) : Result<SceneFile>(file_round(file));
     if (!entries)
         return entries.error();

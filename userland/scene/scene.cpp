@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "mesh/vector.hpp"
-
 namespace phantom::scene {
 
 std::uint64_t Scene::triangles() const
@@ -32,11 +30,12 @@ mesh::Bounds Scene::bounds() const
 double Scene::max_radius_mm() const
 {
     double radius = 0;
-    for (const Material& material : materials)
-        radius = std::max(radius, material.radius_mm);
+    for (const Object& object : objects)
+        radius = std::max(radius, materials[object.material].radius_mm);
     return radius;
 }
 
+// A material that no object has calls for nothing.
 std::vector<std::string> Scene::effects_called_for() const
 {
     const bool damping = std::any_of(materials.begin(), materials.end(), [](const Material& material) {

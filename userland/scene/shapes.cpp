@@ -15,7 +15,7 @@ namespace {
 using mesh::Triple;
 using mesh::Vec3;
 
-/// Refinements of the icosahedron. Each divides the chord error by four: 20.5%, 6.0%, 1.6%, 0.39%, 0.098%.
+/// Refinements of the icosahedron; each divides the chord error by about four, to 0.11% of the radius.
 constexpr int refinements = 4;
 
 /// Every face into four; the midpoint of an edge is made once.

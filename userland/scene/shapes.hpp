@@ -6,8 +6,8 @@
 
 namespace phantom::scene {
 
-/// A sphere round the origin: an icosahedron refined until no point of a face is farther than
-/// 0.1% of the radius below the sphere; 5,120 triangles whatever the radius. Radial normals.
+/// A sphere round the origin: a refined icosahedron of 5,120 triangles whatever the radius, its faces at most
+/// 0.12% of the radius below the sphere. Radial normals.
 mesh::Soup sphere_soup(double radius_mm);
 
 /// A box round the origin, 12 triangles, no normals: the crease angle makes its edges sharp.
