@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// fdhctl info: what a scene is made of and what touching it will cost.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "fdhctl/command_line.hpp"
+#include "fdhctl/mesh_report.hpp"
+#include "feeder/servo_choice.hpp"
+#include "study/tick_cost.hpp"
+
+namespace phantom::fdhctl {
+
+namespace {
+
+/// The budget that the prediction is for: the feeder's own.
+constexpr std::uint32_t budget = feeder::FeederOptions{}.budget;
+
+struct Facts {
+    scene::Scene scene;
+    double build_ms = 0;
+    std::size_t tree_bytes = 0;
+    std::uint32_t rate_hz = 0;
+    phantom_model model{};
+    study::TickCost cost;
+};
+
+Result<Facts> gather(const SceneOptions& options)
+{
+    Result<scene::Scene> scene = load_scene(options);
+    if (!scene)
+        return scene.error();
+    Facts facts;
+    facts.scene = std::move(*scene);
+    if (Status status = feeder::check_reach(facts.scene, {}); !status)
+        return status.error();
+    const auto begin = std::chrono::steady_clock::now();
+    const fdh::SceneTree<14> tree = scene::build_tree<14>(facts.scene);
+    facts.build_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    facts.tree_bytes = tree.bytes();
+    const Result<std::uint32_t> rate = feeder::choose_rate({}, facts.scene.servo);
+    if (!rate)
+        return rate.error();
+    facts.rate_hz = *rate;
+    device::UsermodeOptions usermode;
+    usermode.virtual_clock = true;
+    const Result<device::Device> device = device::Device::open_usermode(usermode);
+    if (!device)
+        return device.error();
+    const Result<phantom_model> model = feeder::choose_model({}, facts.scene.servo, device->info().features);
+    if (!model)
+        return model.error();
+    facts.model = *model;
+    const std::uint32_t isa = __builtin_cpu_supports("avx2") ? PHANTOM_ISA_AVX2 : PHANTOM_ISA_SSE2;
+    Result<study::TickCost> cost = study::measure_tick(facts.scene, tree, facts.model, isa, budget);
+    if (!cost)
+        return cost.error();
+    facts.cost = *cost;
+    return facts;
+}
+
+nlohmann::json json_of(const Facts& facts)
+{
+    const scene::Scene& scene = facts.scene;
+    const mesh::Bounds bounds = scene.bounds();
+    nlohmann::json objects = nlohmann::json::array(), materials = nlohmann::json::array();
+    for (const scene::Object& object : scene.objects)
+        objects.push_back({{"name", object.name},
+                           {"file", object.file.string()},
+                           {"triangles", object.mesh.faces.size()},
+                           {"material", scene.materials[object.material].name},
+                           {"report", report_json(object.report)}});
+    for (const scene::Material& material : scene.materials) {
+        nlohmann::json entry = {{"name", material.name},
+                                {"stiffness_n_mm", material.stiffness_n_mm},
+                                {"radius_mm", material.radius_mm}};
+        if (material.damping_ns_m)
+            entry["damping_ns_m"] = *material.damping_ns_m;
+        materials.push_back(entry);
+    }
+    return {
+        {"scene", scene.file.string()},
+        {"triangles", scene.triangles()},
+        {"bounds_mm", {{"low", bounds.low}, {"high", bounds.high}}},
+        {"objects", objects},
+        {"materials", materials},
+        {"effects",
+         {{"called_for", scene.effects_called_for()}, {"not_called_for", scene.effects_not_called_for()}}},
+        {"rate_hz", facts.rate_hz},
+        {"model", device::model_text(facts.model)},
+        {"tick",
+         {{"isa", device::isa_name(facts.cost.isa)},
+          {"patches", facts.cost.patches},
+          {"median_ns", facts.cost.tick_ns.median},
+          {"p99_ns", facts.cost.tick_ns.p99},
+          {"period_percent", facts.cost.tick_ns.median * 1e-7 * facts.rate_hz}}},
+        {"tree", {{"build_ms", facts.build_ms}, {"bytes", facts.tree_bytes}}}};
+}
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string text;
+    for (const std::string& word : words)
+        text += (text.empty() ? "" : ", ") + word;
+    return text.empty() ? "none" : text;
+}
+
+std::string text_of(const Facts& facts)
+{
+    const scene::Scene& scene = facts.scene;
+    const mesh::Bounds bounds = scene.bounds();
+    std::string text;
+    const auto add = [&text](const char* name, const std::string& value) {
+        text += fmt::format("{:<11} {}\n", name, value);
+    };
+    add("scene", fmt::format("{}: {} triangles in {} object{}, {:.4g} x {:.4g} x {:.4g} mm",
+                             scene.file.string(), scene.triangles(), scene.objects.size(),
+                             scene.objects.size() == 1 ? "" : "s", bounds.high[0] - bounds.low[0],
+                             bounds.high[1] - bounds.low[1], bounds.high[2] - bounds.low[2]));
+    for (const scene::Object& object : scene.objects) {
+        text += fmt::format("\n{:<11} {} ({}), material {}\n", "object", object.name, object.file.string(),
+                            scene.materials[object.material].name);
+        text += report_text(object.report);
+    }
+    text += "\n";
+    for (const scene::Material& material : scene.materials)
+        add("material",
+            fmt::format("{}: stiffness {:g} N/mm, radius {:g} mm{}", material.name, material.stiffness_n_mm,
+                        material.radius_mm,
+                        material.damping_ns_m ? fmt::format(", damping {:g} N*s/m", *material.damping_ns_m)
+                                              : ""));
+    add("effects", "called for: " + joined(scene.effects_called_for()) +
+                       "; not called for, and costing nothing: " + joined(scene.effects_not_called_for()));
+    add("hierarchy", fmt::format("FDH14, {:.1f} MB, built in {:.0f} ms",
+                                 static_cast<double>(facts.tree_bytes) * 1e-6, facts.build_ms));
+    add("model", device::model_text(facts.model));
+    add("tick",
+        fmt::format(
+            "{:.0f} ns (median), {:.0f} ns (p99) with {} patches and {}: {:.2f} % of a period at {} Hz "
+            "(measured here, on a virtual clock)",
+            facts.cost.tick_ns.median, facts.cost.tick_ns.p99, facts.cost.patches,
+            device::isa_name(facts.cost.isa), facts.cost.tick_ns.median * 1e-7 * facts.rate_hz,
+            facts.rate_hz));
+    return text;
+}
+
+} // namespace
+
+Run add_info(CLI::App& app)
+{
+    struct Options {
+        SceneOptions scene;
+        bool json = false;
+    };
+    auto options = std::make_shared<Options>();
+    options->scene.add(app);
+    app.add_flag("--json", options->json, "as one line of JSON");
+    return [options] {
+        const Result<Facts> facts = gather(options->scene);
+        if (!facts)
+            return fail(facts.error());
+        if (options->json)
+            std::printf("%s\n", json_of(*facts).dump().c_str());
+        else
+            std::printf("%s", text_of(*facts).c_str());
+        return exit_success;
+    };
+}
+
+} // namespace phantom::fdhctl

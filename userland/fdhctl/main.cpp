@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// fdhctl: the command line of phantom_rt. One table, one file per command.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iterator>
+#include <string>
+
+#include "fdhctl/command_line.hpp"
+
+namespace {
+
+using namespace phantom::fdhctl;
+
+constexpr Command commands[] = {
+    {"load", "touch a scene: prepare, build, feed; Ctrl-C ramps down and stops", add_load},
+    {"status", "what the running servo does", add_status},
+    {"rate", "change the running servo's rate", add_rate},
+    {"model", "change the running servo's contact model", add_model},
+    {"stop", "ramp down and end what runs", add_stop},
+    {"info", "triangles, defects, effects and predicted cost of a scene", add_info},
+    {"prepare", "the preprocessing alone, with its report", add_prepare},
+    {"stroke", "make a path over a scene's surface for the simulated device", add_stroke},
+    {"trace", "the module's code on a virtual clock, one tick per row of a path", add_trace},
+    {"bench", "query and tick times of a scene", add_bench},
+    {"devices", "what can be driven here, and how", add_devices},
+    {"view", "see and touch a scene in a window (fdhview)", add_view},
+};
+
+int usage_error(const CLI::App& app, const CLI::ParseError& error)
+{
+    std::string line = error.what();
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    const auto chosen = app.get_subcommands();
+    const std::string help =
+        chosen.empty() ? "fdhctl --help" : "fdhctl " + chosen.front()->get_name() + " --help";
+    std::fprintf(stderr, "fdhctl: %s (see %s)\n", line.c_str(), help.c_str());
+    return exit_usage;
+}
+
+int run(int argc, char** argv)
+{
+    CLI::App app("fdhctl: haptic rendering of triangle meshes with fixed direction hulls", "fdhctl");
+    app.set_version_flag("--version", "fdhctl " PHANTOM_VERSION);
+    app.require_subcommand(1);
+    Run runs[std::size(commands)];
+    CLI::App* apps[std::size(commands)];
+    for (std::size_t i = 0; i < std::size(commands); ++i) {
+        apps[i] = app.add_subcommand(commands[i].name, commands[i].description);
+        runs[i] = commands[i].add(*apps[i]);
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+            return app.exit(error);
+        return usage_error(app, error);
+    }
+    for (std::size_t i = 0; i < std::size(commands); ++i)
+        if (apps[i]->parsed())
+            return runs[i]();
+    return exit_usage;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        return fail({"", error.what()});
+    }
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// fdhctl prepare: the preprocessing alone, a mesh file in, a mesh file out.
+#include "mesh/prepare.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "base/progress_bar.hpp"
+#include "fdhctl/command_line.hpp"
+#include "fdhctl/mesh_report.hpp"
+
+namespace phantom::fdhctl {
+
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    std::string output;
+    bool json = false;
+};
+
+int run(const Options& options)
+{
+    const Result<scene::Scene> scene = load_scene(options.scene);
+    if (!scene)
+        return fail(scene.error());
+    if (scene->objects.size() != 1)
+        return fail({options.scene.scene, "prepare takes one mesh, not a scene of several"});
+    const scene::Object& object = scene->objects.front();
+    if (Status status = mesh::write_ply(object.mesh, options.output); !status)
+        return fail(status.error());
+    if (options.json)
+        std::printf("%s\n", report_json(object.report).dump().c_str());
+    else
+        std::printf("%swritten to  %s\n", report_text(object.report).c_str(), options.output.c_str());
+    return exit_success;
+}
+
+} // namespace
+
+Run add_prepare(CLI::App& app)
+{
+    auto options = std::make_shared<Options>();
+    app.add_option("mesh", options->scene.scene, "PLY, OBJ, STL or OFF")->required()->type_name("MESH");
+    app.add_option("-o,--output", options->output, "binary PLY in mm with vertex normals")
+        ->required()
+        ->type_name("OUT.ply");
+    options->scene.add_preparation(app);
+    app.add_flag("--json", options->json, "the report as one line of JSON");
+    return [options] { return run(*options); };
+}
+
+} // namespace phantom::fdhctl

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "study/tick_cost.hpp"
+
+#include <cstdlib>
+#include <memory>
+#include <random>
+
+#include "feeder/feeder.hpp"
+#include "feeder/path.hpp"
+#include "study/surface_point.hpp"
+
+extern "C" {
+#include "phantom_float.h"
+}
+
+namespace phantom::study {
+
+namespace {
+
+constexpr std::size_t sets = 64;
+constexpr std::size_t tips_per_set = 128;
+
+/// The tip moves this far between ticks: a hand at 50 mm/s, sampled at 1 kHz.
+constexpr double tip_step_mm = 0.05;
+
+const phantom_float_ops& ops_of(std::uint32_t isa)
+{
+    return isa == PHANTOM_ISA_AVX2 ? phantom_float_avx2 : phantom_float_sse2;
+}
+
+struct FreeSet {
+    void operator()(phantom_float_set* set) const { std::free(set); }
+};
+using FloatSet = std::unique_ptr<phantom_float_set, FreeSet>;
+
+FloatSet prepared(const phantom_float_ops& ops, const device::PatchSet& set, double& microseconds)
+{
+    const std::size_t bytes =
+        (ops.set_bytes(static_cast<u32>(set.patches.size())) + PHANTOM_FLOAT_SET_ALIGN - 1) /
+        PHANTOM_FLOAT_SET_ALIGN * PHANTOM_FLOAT_SET_ALIGN;
+    FloatSet out(static_cast<phantom_float_set*>(std::aligned_alloc(PHANTOM_FLOAT_SET_ALIGN, bytes)));
+    phantom_float_prepare piece{};
+    piece.set = out.get();
+    piece.patches = set.patches.data();
+    piece.materials = set.materials.data();
+    piece.patch_count = static_cast<u32>(set.patches.size());
+    piece.material_count = static_cast<u32>(set.materials.size());
+    microseconds = 1e-3 * nanoseconds_of([&] {
+                       do {
+                           piece.count =
+                               std::min<u32>(PHANTOM_FLOAT_PREPARE_MAX, piece.patch_count - piece.first);
+                           ops.prepare(&piece);
+                           piece.first += piece.count;
+                       } while (piece.first < piece.patch_count);
+                   });
+    return out;
+}
+
+/// Positions round a point, a small step apart.
+std::vector<Vector> wander(const Vector& around, std::mt19937_64& random)
+{
+    std::normal_distribution<double> normal;
+    std::vector<Vector> tips;
+    Vector tip = around;
+    for (std::size_t i = 0; i < tips_per_set; ++i) {
+        const Vector step = tip_step_mm * unit({normal(random), normal(random), normal(random)});
+        // Back to where it came from every other time: it stays within the set.
+        tip = i % 2 ? around : around + step;
+        tips.push_back(tip);
+    }
+    return tips;
+}
+
+/// Times ops.tick() over the tips; adds to samples and contacts.
+void time_float_ticks(const phantom_float_ops& ops, const phantom_model& model, const device::PatchSet& set,
+                      const FloatSet& floats, const std::vector<Vector>& tips, std::vector<double>& samples,
+                      double& contacts)
+{
+    phantom_float_job job{};
+    job.set = floats.get();
+    job.model = model;
+    job.proxy_face = PHANTOM_PATCH_NONE;
+    for (const Vector& tip : tips) {
+        const std::array<std::int64_t, 3> tip_nm = feeder::to_nanometres(tip);
+        for (int axis = 0; axis < 3; ++axis) {
+            job.previous_nm[axis] = job.tip_nm[axis];
+            job.tip_nm[axis] = static_cast<s32>(tip_nm[axis] - set.header.origin_nm[axis]);
+        }
+        samples.push_back(nanoseconds_of([&] { ops.tick(&job); }));
+        contacts += job.contacts;
+        job.path_valid = 1;
+    }
+}
+
+Status time_whole_ticks(device::Device& device, const std::vector<Vector>& tips, std::vector<double>& samples)
+{
+    for (const Vector& tip : tips) {
+        if (Status status = device.move_simulated_tip(feeder::to_nanometres(tip)); !status)
+            return status;
+        Status stepped = success();
+        samples.push_back(nanoseconds_of([&] { stepped = device.step(1); }));
+        if (!stepped)
+            return stepped;
+    }
+    return success();
+}
+
+} // namespace
+
+std::vector<Vector> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed)
+{
+    const fdh::SceneTree<14> no_tree;
+    const Surface surface(scene, no_tree);
+    std::mt19937_64 random(seed);
+    std::uniform_int_distribution<std::uint64_t> pick(0, scene.triangles() - 1);
+    std::vector<Vector> points;
+    while (points.size() < count) {
+        std::uint64_t face = pick(random);
+        std::uint32_t object = 0;
+        while (face >= scene.objects[object].mesh.faces.size())
+            face -= scene.objects[object++].mesh.faces.size();
+        const SurfacePoint at =
+            surface.on_face(object, static_cast<std::uint32_t>(face), {1 / 3.0, 1 / 3.0, 1 / 3.0});
+        const double radius_mm = scene.materials[scene.objects[object].material].radius_mm;
+        points.push_back(at.position_mm + 0.5 * radius_mm * at.normal);
+    }
+    return points;
+}
+
+Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
+                              const phantom_model& model, std::uint32_t isa, std::uint32_t budget)
+{
+    device::UsermodeOptions usermode;
+    usermode.virtual_clock = true;
+    usermode.isa = isa;
+    Result<device::Device> device = device::Device::open_usermode(usermode);
+    if (!device)
+        return device.error();
+    if (Status status = device->set_model(model); !status)
+        return status.error();
+    phantom_start start{};
+    start.flags = PHANTOM_START_LIMITS_OFF;
+
+    const phantom_float_ops& ops = ops_of(isa);
+    const feeder::FeederOptions search;
+    feeder::SetBuilder builder(scene);
+    device::PatchSet set;
+    fdh::Nearest near;
+    std::mt19937_64 random(2);
+    std::vector<double> float_ns, tick_ns, prepare_us;
+    TickCost cost;
+    cost.isa = isa;
+    bool started = false;
+    for (const Vector& point : points_near_surface(scene, sets, 1)) {
+        near.clear();
+        tree.nearest(point, budget, search.search_radius_mm, near);
+        builder.build(near.hits, point, near.coverage, set);
+        if (set.patches.empty())
+            continue;
+        cost.patches = std::max(cost.patches, static_cast<std::uint32_t>(set.patches.size()));
+        double microseconds = 0;
+        const FloatSet floats = prepared(ops, set, microseconds);
+        prepare_us.push_back(microseconds);
+        const std::vector<Vector> tips = wander(point, random);
+        time_float_ticks(ops, model, set, floats, tips, float_ns, cost.contacts);
+        if (Result<bool> taken = device->try_submit(set); !taken)
+            return taken.error();
+        if (!started) {
+            if (Status status = device->start(start); !status)
+                return status.error();
+            started = true;
+        }
+        if (Status status = time_whole_ticks(*device, tips, tick_ns); !status)
+            return status.error();
+    }
+    cost.contacts /= std::max<std::size_t>(1, float_ns.size());
+    cost.float_ns = Distribution::of(std::move(float_ns));
+    cost.tick_ns = Distribution::of(std::move(tick_ns));
+    cost.prepare_us = Distribution::of(std::move(prepare_us));
+    return cost;
+}
+
+} // namespace phantom::study

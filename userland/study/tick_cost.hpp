@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a servo tick costs on this machine, with sets of a given scene.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/result.hpp"
+#include "fdh/scene_tree.hpp"
+#include "phantom_abi.h"
+#include "scene/scene.hpp"
+#include "study/distribution.hpp"
+#include "study/vector.hpp"
+
+namespace phantom::study {
+
+/// Points half a contact radius above the middles of faces spread over the scene. Repeatable.
+std::vector<Vector> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed);
+
+struct TickCost {
+    std::uint32_t isa = PHANTOM_ISA_NONE;
+    std::uint32_t patches = 0; ///< in the sets, at most
+    double contacts = 0;       ///< per tick, on average
+    Distribution float_ns;     ///< the float section alone: contact, proxy, effects
+    Distribution tick_ns;      ///< the whole tick, stepped from outside on a virtual clock
+    Distribution prepare_us;   ///< converting one set, all its float sections
+};
+
+/// Sets of `budget` triangles round points near the surface; in each the tip moves by small steps in
+/// contact. isa SSE2 or AVX2; fails when the processor has it not.
+Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
+                              const phantom_model& model, std::uint32_t isa, std::uint32_t budget);
+
+} // namespace phantom::study

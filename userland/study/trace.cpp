@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "study/trace.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "feeder/servo_choice.hpp"
+
+namespace phantom::study {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Without limits a set may be as old as it likes: --feed-every asks what an old set costs.
+constexpr std::uint32_t never_stale_ms = 1000000000;
+
+double median_of(std::vector<double>& values)
+{
+    if (values.empty())
+        return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+class Tracer {
+  public:
+    Tracer(const scene::Scene& scene, const TraceOptions& options) : scene_(scene), options_(options) {}
+
+    Status open()
+    {
+        if (Status status = feeder::check_reach(scene_, options_.feeder); !status)
+            return status;
+        const Result<std::uint32_t> rate = feeder::choose_rate(options_.servo, scene_.servo);
+        if (!rate)
+            return rate.error();
+        device::UsermodeOptions usermode;
+        usermode.virtual_clock = true;
+        usermode.rate_hz = *rate;
+        usermode.isa = wants_double() ? PHANTOM_ISA_DOUBLE : options_.isa;
+        usermode.patches_max = patches_max();
+        Result<device::Device> device = device::Device::open_usermode(usermode);
+        if (!device)
+            return device.error();
+        device_.emplace(std::move(*device));
+        const Result<phantom_model> model =
+            feeder::choose_model(options_.servo, scene_.servo, device_->info().features);
+        if (!model)
+            return model.error();
+        model_ = *model;
+        if (Status status = device_->set_model(model_); !status)
+            return status;
+        tree_.emplace(options_.feeder.all ? fdh::SceneTree<14>() : scene::build_tree<14>(scene_));
+        feeder_.emplace(scene_, *tree_, *device_, options_.feeder);
+        return success();
+    }
+
+    Result<TraceRun> run(const feeder::Path& path)
+    {
+        run_.csv = std::string(feeder::trace_header) + "\n";
+        run_.csv.reserve(path.size() * 160);
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            if (Status status = row(path[i], i); !status)
+                return status.error();
+            if (options_.progress && i % 256 == 0)
+                options_.progress(static_cast<double>(i) / static_cast<double>(path.size()));
+        }
+        summarise();
+        return std::move(run_);
+    }
+
+  private:
+    bool wants_double() const
+    {
+        return options_.servo.arith.value_or(scene_.servo.arith.value_or("")) == "double";
+    }
+
+    /// 0 = what the module takes by itself.
+    std::uint32_t patches_max() const
+    {
+        const std::uint64_t wanted = options_.feeder.all ? scene_.triangles() : options_.feeder.budget;
+        return wanted > PHANTOM_PATCHES_MAX ? static_cast<std::uint32_t>(wanted) : 0;
+    }
+
+    Status begin()
+    {
+        phantom_start start{};
+        if (options_.limits) {
+            start = feeder::choose_start(start, scene_.device);
+        } else {
+            start.flags = PHANTOM_START_LIMITS_OFF;
+            start.stale_ms = never_stale_ms;
+        }
+        return device_->start(start);
+    }
+
+    /// Whether this tick gets a set. A set of everything stays good until it is stale.
+    bool feeds(std::size_t index) const
+    {
+        if (options_.feeder.all && !options_.limits)
+            return index == 0;
+        return index % options_.feed_every == 0 || retry_;
+    }
+
+    Status feed(const feeder::PathRow& at, double& query_us)
+    {
+        Result<feeder::FeedReport> report = feeder_->feed(at.tip_mm, proxy_mm_, inside_);
+        if (!report)
+            return report.error();
+        retry_ = report->set_id == 0;
+        query_us = report->query_us;
+        query_us_.push_back(report->query_us);
+        run_.summary.sets += report->set_id != 0;
+        run_.summary.patches_max = std::max(run_.summary.patches_max, report->patches);
+        return success();
+    }
+
+    Status row(const feeder::PathRow& at, std::size_t index)
+    {
+        if (Status status = device_->move_simulated_tip(feeder::to_nanometres(at.tip_mm)); !status)
+            return status;
+        double query_us = 0.0;
+        if (feeds(index))
+            if (Status status = feed(at, query_us); !status)
+                return status;
+        if (index == 0)
+            if (Status status = begin(); !status)
+                return status;
+        const auto before = Clock::now();
+        if (Status status = device_->step(1); !status)
+            return status;
+        const double step_ns = std::chrono::duration<double, std::nano>(Clock::now() - before).count();
+        Result<std::vector<phantom_tick>> ticks = device_->read_ticks();
+        if (!ticks)
+            return ticks.error();
+        if (ticks->size() != 1)
+            return Error{device_->name(), fmt::format("expected one record a tick, got {}", ticks->size())};
+        add(at, ticks->front(), query_us, step_ns);
+        return success();
+    }
+
+    void add(const feeder::PathRow& at, const phantom_tick& tick, double query_us, double step_ns)
+    {
+        feeder::TraceRow row = feeder::trace_row(tick, at.time_s);
+        proxy_mm_ = row.inside ? row.proxy_mm : at.tip_mm;
+        inside_ = row.inside;
+        // The row's own position, not the one rounded to nm.
+        row.tip_mm = at.tip_mm;
+        row.proxy_mm = proxy_mm_;
+        row.query_us = query_us;
+        row.tick_ns = step_ns;
+        feeder::append_trace_row(run_.csv, row);
+
+        TraceSummary& sum = run_.summary;
+        const std::array<double, 3>& f = row.force_n;
+        const std::array<double, 3>& g = force_n_;
+        sum.contact_ticks += row.contacts > 0;
+        sum.inside_ticks += row.inside;
+        sum.uncovered_ticks += (row.flags & PHANTOM_TICK_UNCOVERED) != 0;
+        sum.force_max_n = std::max(sum.force_max_n, std::hypot(f[0], f[1], f[2]));
+        if (sum.ticks > 0)
+            sum.force_step_max_n =
+                std::max(sum.force_step_max_n, std::hypot(f[0] - g[0], f[1] - g[1], f[2] - g[2]));
+        force_n_ = f;
+        ++sum.ticks;
+        tick_ns_.push_back(step_ns);
+    }
+
+    void summarise()
+    {
+        const phantom_status status = device_->status();
+        TraceSummary& sum = run_.summary;
+        sum.model = device::model_text(model_);
+        sum.isa = device::isa_name(status.isa);
+        sum.refused = status.refused;
+        sum.saturated = status.saturated;
+        sum.faults = device::fault_names(status.faults);
+        sum.query_median_us = median_of(query_us_);
+        sum.tick_median_ns = median_of(tick_ns_);
+    }
+
+    const scene::Scene& scene_;
+    const TraceOptions& options_;
+    std::optional<device::Device> device_;
+    std::optional<fdh::SceneTree<14>> tree_;
+    std::optional<feeder::Feeder> feeder_;
+    phantom_model model_{};
+    std::array<double, 3> proxy_mm_{}; ///< after the tick before
+    std::array<double, 3> force_n_{};  ///< of the tick before
+    bool inside_ = false;
+    bool retry_ = false; ///< the last set found no slot
+    TraceRun run_;
+    std::vector<double> query_us_, tick_ns_;
+};
+
+} // namespace
+
+Result<TraceRun> run_trace(const scene::Scene& scene, const feeder::Path& path, const TraceOptions& options)
+{
+    Tracer tracer(scene, options);
+    if (Status status = tracer.open(); !status)
+        return status.error();
+    return tracer.run(path);
+}
+
+} // namespace phantom::study

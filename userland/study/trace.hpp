@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The module's code on a virtual clock: a path in, a row per tick out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "base/result.hpp"
+#include "feeder/feeder.hpp"
+#include "feeder/path.hpp"
+#include "feeder/trace_file.hpp"
+#include "scene/scene.hpp"
+
+namespace phantom::study {
+
+struct TraceOptions {
+    scene::ServoSettings servo; ///< word by word over the scene's [servo]
+    feeder::FeederOptions feeder;
+    std::uint32_t feed_every = 1; ///< a set before every K-th tick
+    bool limits = false;          ///< clamp, slew, ramp, speed, stall and age of sets as on a real device
+    std::uint32_t isa = PHANTOM_ISA_NONE;
+    std::function<void(double)> progress{};
+};
+
+struct TraceSummary {
+    std::string model; ///< as chosen
+    std::string isa;
+    std::uint64_t ticks = 0, contact_ticks = 0, inside_ticks = 0;
+    std::uint64_t uncovered_ticks = 0; ///< no set covered the tip: the force is not the mesh's
+    std::uint64_t sets = 0, refused = 0, saturated = 0;
+    std::uint32_t patches_max = 0;
+    double force_max_n = 0, force_step_max_n = 0;
+    double query_median_us = 0, tick_median_ns = 0;
+    std::string faults; ///< "none"
+};
+
+struct TraceRun {
+    std::string csv; ///< header and one row per row of the path
+    TraceSummary summary;
+};
+
+/// One tick per row of the path: the tip moves there, a set is fed for it, the servo ticks.
+Result<TraceRun> run_trace(const scene::Scene& scene, const feeder::Path& path, const TraceOptions& options);
+
+} // namespace phantom::study
