@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "fdh/grid.hpp"
 #include "fdh/ranking.hpp"
 
 namespace phantom::fdh {
@@ -48,9 +48,7 @@ void NearestCollector::make_room(Sink& sink)
 {
     auto& self = *static_cast<NearestCollector*>(sink.owner);
     // One more than asked for: the nearest of those left out tells how far the rest reach.
-    const bool bounded = self.count_ < std::numeric_limits<std::uint32_t>::max();
-    const std::size_t wanted = bounded ? self.count_ + 1 : std::numeric_limits<std::size_t>::max();
-    if (sink.size > wanted) {
+    if (const std::size_t wanted = self.count_ + 1; self.count_ < sink.size && wanted < sink.size) {
         select_nearest({sink.hits, sink.size}, wanted);
         sink.size = wanted;
         self.kept_limit_ = sink.hits[wanted - 1].distance;
@@ -93,7 +91,8 @@ Sink& WithinCollector::open(double distance_error)
 void WithinCollector::make_room(Sink& sink)
 {
     auto& hits = static_cast<WithinCollector*>(sink.owner)->out_;
-    hits.resize(std::max({hits.capacity(), 2 * sink.size, spare_hits}));
+    hits.resize(
+        std::max(2 * sink.size, spare_hits)); // not to its capacity: filling that would cost every query
     sink.hits = hits.data();
     sink.capacity = hits.size();
 }

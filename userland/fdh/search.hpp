@@ -38,7 +38,7 @@ ProjectedPoint<K> project(const Point& p);
 
 template <int K>
 struct SearchQuery {
-    Point point;                 ///< [steps]
+    double point[3];             ///< [steps]
     ProjectedPoint<K> projected; ///< of the same
     double step;                 ///< grid step [mesh unit]
     std::uint32_t object;        ///< written to the hits

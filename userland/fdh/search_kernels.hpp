@@ -173,12 +173,12 @@ struct Search {
         const bool made_room = sink.size + lanes > sink.capacity;
         if (made_room)
             sink.full(sink);
+        const auto before = sink.size;
         for (int lane = 0; lane < lanes; lane += S::double_width) {
             const V d2 = Distance::squared(leaf, lane, point);
             const unsigned mask = S::bits(d2 <= limit2);
             if (mask == 0)
                 continue;
-            sink.counts.triangles += static_cast<unsigned>(__builtin_popcount(mask));
             const V distance = S::sqrt(d2) * query.step;
             // Every lane is written and the next hit overwrites those that are none: no branch to mispredict.
             for (int i = 0; i < S::double_width; i++) {
@@ -189,6 +189,7 @@ struct Search {
                 sink.size += mask >> i & 1;
             }
         }
+        sink.counts.triangles += sink.size - before;
         return made_room;
     }
 
@@ -196,7 +197,7 @@ struct Search {
     {
         using V = typename S::Double;
         const V zero{};
-        const double* p = reinterpret_cast<const double*>(&query.point);
+        const auto& p = query.point;
         const typename Distance::Vector point = {zero + p[0], zero + p[1], zero + p[2]};
         double limit2 = squared_limit(sink, query);
         float hull_limit = search_limit(limit2);

@@ -50,11 +50,12 @@ struct Box {
         low = min(low, l);
         high = max(high, h);
     }
-    /// Half the surface.
+    /// Half the surface, a step thicker than the box is: flat boxes, lines and points are not free.
     [[nodiscard]] float area() const
     {
-        const Float4 e = high - low;
-        return e[0] * (e[1] + e[2]) + e[1] * e[2];
+        constexpr float step = 1;
+        const float x = high[0] - low[0] + step, y = high[1] - low[1] + step, z = high[2] - low[2] + step;
+        return x * (y + z) + y * z;
     }
 };
 
@@ -87,6 +88,7 @@ class Splitter {
     {
     }
 
+    /// Splits [begin, end) down to its leaves.
     Subtree divide(std::uint32_t begin, std::uint32_t end, int depth, unsigned threads)
     {
         const std::uint32_t count = end - begin;
@@ -137,8 +139,8 @@ class Splitter {
         int axis = -1, bin = 0; ///< bins up to and including `bin` go left
     };
 
-    /// Notes the node and how it is best collapsed. A node costs as much as it is likely to be visited: half
-    /// its surface, plus one square step so that flat nodes are not free. The leaves are what they are.
+    /// Notes the node and how it is best collapsed. A node costs as much as it is likely to be visited: its
+    /// surface. The leaves are what they are.
     Subtree join(std::uint32_t middle, float area, const Subtree& left, const Subtree& right)
     {
         BinaryNode& node = nodes_[middle];
@@ -159,7 +161,7 @@ class Splitter {
             shared[trees - 1] = best;
         }
         node.from_left[0] = 0;
-        result.cost[0] = shared[lanes - 1] + area + 1;
+        result.cost[0] = shared[lanes - 1] + area;
         for (int i = 1; i < lanes - 1; i++) {
             const bool fewer = result.cost[i - 1] < shared[i];
             result.cost[i] = fewer ? result.cost[i - 1] : shared[i];
@@ -236,7 +238,8 @@ class Splitter {
                 const float place = (b.low[axis] + b.high[axis] - origin[axis]) * scale[axis];
                 return std::min(static_cast<int>(place), bin_count - 1) <= best.bin;
             });
-        return static_cast<std::uint32_t>(middle - boxes_.begin());
+        const auto split = static_cast<std::uint32_t>(middle - boxes_.begin());
+        return split == begin || split == end ? 0 : split;
     }
 
     /// Splits by count, along the widest axis of the centres, at a whole number of leaves.

@@ -21,7 +21,7 @@ struct TriangleTree<K>::Impl {
         if (data.nodes.empty())
             return;
         const Point steps = data.grid.to_steps(p);
-        const SearchQuery<K> query{steps, project<K>(steps), data.grid.step, object};
+        const SearchQuery<K> query{{steps[0], steps[1], steps[2]}, project<K>(steps), data.grid.step, object};
         Sink& sink = collector.open(data.grid.distance_error(steps));
         kernels->search(data.nodes.data(), data.leaves.data(), query, sink);
     }

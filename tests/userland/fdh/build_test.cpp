@@ -82,6 +82,21 @@ TEST(BuildTest, GeometricSeriesStaysWithinTheSearchStack)
     }
 }
 
+// No box on a line has a surface; the heuristic must divide it all the same.
+TEST(BuildTest, TrianglesOnALineAreDivided)
+{
+    Mesh mesh;
+    for (int i = 0; i < 20000; i++)
+        mesh.add({double(i), 0, 0}, {i + 0.3, 0, 0}, {i + 0.9, 0, 0});
+    const auto tree = TriangleTree<14>::build(mesh.view());
+    const Point p = {12345.2, 1, 0};
+    Nearest found;
+    tree.nearest(p, 8, 10, found);
+    expect_nearest(true_distances(mesh, p), found, 8, 10, tree.accuracy(p));
+    EXPECT_LE(found.counts.leaves, 10u) << "of 2500";
+    EXPECT_LE(tree.bytes(), 80 * mesh.triangles.size());
+}
+
 TEST(BuildTest, ExtremeSizesKeepTheirShape)
 {
     const Mesh unit = sphere(3, 1);
