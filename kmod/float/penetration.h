@@ -19,8 +19,9 @@
  * it, or clipped a ridge, which must not: what tells them apart is whether a surface still stands
  * over the tip. The two rules "by rounding" catch paths so flat that no crossing is found.
  *
- * V is kept in whole nm, so P1 V' is prolonged by twice rounding_mm() along V's face normal: a V
- * that rounding put under its face is found again.
+ * V is kept in whole nm, so P1 V' is prolonged until it ends twice rounding_mm() higher over V's
+ * face: a V that rounding put under its face is found again. The direction is kept, or V would
+ * creep by some nm a tick.
  */
 #ifndef PHANTOM_FLOAT_PENETRATION_H
 #define PHANTOM_FLOAT_PENETRATION_H
@@ -189,6 +190,26 @@ static inline bool penetration_surfaced(const struct phantom_float_job *job)
 	return false;
 }
 
+/* Moves the end of P1 V' twice rounding_mm() up over a face with normal g. */
+static inline void penetration_prolong(const struct phantom_float_job *job, struct real3 g,
+				       s32 target[3])
+{
+	real rounding = rounding_mm(job->set), length, rise;
+	struct real3 way = {
+		(real)((s64)target[0] - job->tip_nm[0]) * MM_PER_NM,
+		(real)((s64)target[1] - job->tip_nm[1]) * MM_PER_NM,
+		(real)((s64)target[2] - job->tip_nm[2]) * MM_PER_NM,
+	};
+
+	length = real3_length(way);
+	rise = real3_dot(way, g);
+	/* a way without direction, or one that hardly rises: along the normal instead */
+	if (length < 16 * rounding || rise < (real)0.01 * length)
+		nm_offset(target, real3_scale(g, 2 * rounding), target);
+	else
+		nm_offset(target, real3_scale(way, 2 * rounding / rise), target);
+}
+
 /* V follows the tip. Returns the patch V lies on, NONE if it is not in the set. */
 static inline u32 penetration_follow(struct phantom_float_job *job)
 {
@@ -209,7 +230,7 @@ static inline u32 penetration_follow(struct phantom_float_job *job)
 
 		target[axis] = nm_saturate(job->proxy_nm[axis] + moved);
 	}
-	nm_offset(target, real3_scale(g, 2 * rounding_mm(job->set)), target);
+	penetration_prolong(job, g, target);
 	if (!segment_set(&over, job->tip_nm, target))
 		return patch;
 	at = crossing_find(job->set, &over, CROSSING_OUTWARD, true, -1);
