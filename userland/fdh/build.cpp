@@ -5,6 +5,7 @@
 #include <atomic>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "fdh/parallel.hpp"
 #include "fdh/split.hpp"
@@ -115,25 +116,60 @@ void fill_leaf(Leaf& leaf, std::span<const PrimitiveBox> members, const MeshView
     }
 }
 
-/// Hull of a leaf's triangles. Projections are whole numbers of up to 3 * 2^23 steps: exact in double.
+template <int Sign>
+float signed_term(float x)
+{
+    return Sign > 0 ? x : Sign < 0 ? -x : 0.0f;
+}
+
+/// Low and high of a leaf's triangles in one direction. Its components are -1, 0 or 1, known to the compiler:
+/// lane by lane this is additions and minima of whole vectors.
+template <int K, std::size_t Direction>
+void bound(Hull<K>& hull, const float (&corners)[3][3][lanes])
+{
+    constexpr auto d = hull_directions<K>()[Direction];
+    float low[lanes], high[lanes];
+    for (int lane = 0; lane < lanes; lane++) {
+        float x[3];
+        for (int i = 0; i < 3; i++)
+            x[i] = signed_term<d[0]>(corners[i][0][lane]) + signed_term<d[1]>(corners[i][1][lane]) +
+                   signed_term<d[2]>(corners[i][2][lane]);
+        const float lower = x[0] < x[1] ? x[0] : x[1], higher = x[0] > x[1] ? x[0] : x[1];
+        low[lane] = x[2] < lower ? x[2] : lower;
+        high[lane] = x[2] > higher ? x[2] : higher;
+    }
+    for (int lane = 0; lane < lanes; lane++) { // NaN, of unused lanes, is neither less nor more
+        hull.low[Direction] = low[lane] < hull.low[Direction] ? low[lane] : hull.low[Direction];
+        hull.high[Direction] = high[lane] > hull.high[Direction] ? high[lane] : hull.high[Direction];
+    }
+}
+
+template <int K, std::size_t... Directions>
+void bound_all(Hull<K>& hull, const float (&corners)[3][3][lanes], std::index_sequence<Directions...>)
+{
+    (bound<K, Directions>(hull, corners), ...);
+}
+
+/// Hull of a leaf's triangles. Three coordinates may add up to more than 2^24 steps, where floats are two
+/// apart and the sum is off by one at most: there it is widened by two.
 template <int K>
 Hull<K> hull_of(const Leaf& leaf)
 {
-    constexpr auto directions = hull_directions<K>();
-    Hull<K> hull;
-    for (int k = 0; k < K / 2; k++) {
-        const auto& d = directions[k];
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (int lane = 0; lane < lanes && leaf.triangle[lane] != no_triangle; lane++) {
-            auto dot = [&](const float(&v)[3][lanes]) {
-                return d[0] * double{v[0][lane]} + d[1] * double{v[1][lane]} + d[2] * double{v[2][lane]};
-            };
-            const double a = dot(leaf.vertex), u = dot(leaf.edge1), v = dot(leaf.edge2);
-            low = std::min(low, a + std::min({0.0, u, v}));
-            high = std::max(high, a + std::max({0.0, u, v}));
+    float corners[3][3][lanes]; // whole numbers up to 2^23: exact
+    for (int axis = 0; axis < 3; axis++)
+        for (int lane = 0; lane < lanes; lane++) {
+            corners[0][axis][lane] = leaf.vertex[axis][lane];
+            corners[1][axis][lane] = leaf.vertex[axis][lane] + leaf.edge1[axis][lane];
+            corners[2][axis][lane] = leaf.vertex[axis][lane] + leaf.edge2[axis][lane];
         }
-        hull.low[k] = round_down(low);
-        hull.high[k] = round_up(high);
+    Hull<K> hull = Hull<K>::empty();
+    bound_all(hull, corners, std::make_index_sequence<K / 2>{});
+    constexpr float exact = 16777216; // 2^24
+    for (int k = 0; k < K / 2; k++) {
+        if (std::abs(hull.low[k]) > exact)
+            hull.low[k] -= 2;
+        if (std::abs(hull.high[k]) > exact)
+            hull.high[k] += 2;
     }
     return hull;
 }

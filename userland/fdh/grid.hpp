@@ -22,7 +22,8 @@ namespace phantom::fdh {
 
 struct Grid {
     Point origin{0, 0, 0};
-    double step = 1; ///< power of two, mesh unit
+    double step = 1;           ///< power of two [mesh unit]
+    double steps_per_unit = 1; ///< 1 / step: exact
 
     /// Whole steps from the centre of a box to its faces, at most.
     static constexpr double half_extent_steps = 8388608; // 2^23
@@ -44,21 +45,25 @@ struct Grid {
         int exponent = 0;
         std::frexp(half, &exponent); // half < 2^exponent
         grid.step = std::ldexp(1.0, half > 0 ? std::max(exponent - 23, finest_exponent) : finest_exponent);
+        grid.steps_per_unit = 1 / grid.step;
         return grid;
     }
 
     /// In steps from the origin, unrounded.
     [[nodiscard]] Point to_steps(const Point& p) const
     {
-        return {(p[0] - origin[0]) / step, (p[1] - origin[1]) / step, (p[2] - origin[2]) / step};
+        return {(p[0] - origin[0]) * steps_per_unit, (p[1] - origin[1]) * steps_per_unit,
+                (p[2] - origin[2]) * steps_per_unit};
     }
 
     /// A vertex of the mesh, rounded to whole steps: exact as float.
     [[nodiscard]] std::array<float, 3> round(const Point& vertex) const
     {
+        // Where doubles are one apart, a sum rounds to a whole number; no library call.
+        constexpr double whole = 0x1.8p52;
         const Point s = to_steps(vertex);
-        return {static_cast<float>(std::nearbyint(s[0])), static_cast<float>(std::nearbyint(s[1])),
-                static_cast<float>(std::nearbyint(s[2]))};
+        return {static_cast<float>(s[0] + whole - whole), static_cast<float>(s[1] + whole - whole),
+                static_cast<float>(s[2] + whole - whole)};
     }
 
     /// How far a vertex moved at most [mesh unit]: half the diagonal of a step, and a little for the origin

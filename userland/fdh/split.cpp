@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "fdh/parallel.hpp"
 
@@ -59,11 +60,18 @@ struct Box {
     }
 };
 
-/// Twice the centre: the factor cancels.
-Float4 centre(const PrimitiveBox& box)
-{
-    return low_of(box) + high_of(box);
-}
+/// Of a set of primitives.
+struct Bounds {
+    Box box;
+    Box centres; ///< of twice the primitives' centres: the factor cancels
+
+    void add(const PrimitiveBox& primitive)
+    {
+        const Float4 low = low_of(primitive), high = high_of(primitive), centre = low + high;
+        box.grow(low, high);
+        centres.grow(centre, centre);
+    }
+};
 
 /// An inner node of the binary tree, stored at the index where its range is split: no two nodes share it, so
 /// threads write without a lock and the result does not depend on them. 0 stands for a leaf.
@@ -88,32 +96,11 @@ class Splitter {
     {
     }
 
-    /// Splits [begin, end) down to its leaves.
-    Subtree divide(std::uint32_t begin, std::uint32_t end, int depth, unsigned threads)
+    /// Splits all down to the leaves.
+    Subtree divide(unsigned threads)
     {
-        const std::uint32_t count = end - begin;
-        if (count <= leaf_size_)
-            return {};
-        Box box, centres;
-        for (std::uint32_t i = begin; i < end; i++) {
-            box.grow(low_of(boxes_[i]), high_of(boxes_[i]));
-            const Float4 c = centre(boxes_[i]);
-            centres.grow(c, c);
-        }
-        std::uint32_t middle = depth < balanced_depth ? partition(begin, end, centres) : 0;
-        if (middle == 0)
-            middle = halve(begin, end, centres);
-        Subtree left, right;
-        auto go_left = [&, this] { left = divide(begin, middle, depth + 1, threads / 2); };
-        auto go_right = [&, this] { right = divide(middle, end, depth + 1, threads - threads / 2); };
-        constexpr std::uint32_t worth_a_thread = 8192;
-        if (threads > 1 && count > worth_a_thread) {
-            fork_join(go_left, go_right);
-        } else {
-            go_left();
-            go_right();
-        }
-        return join(middle, box.area(), left, right);
+        const auto count = static_cast<std::uint32_t>(boxes_.size());
+        return divide(0, count, bounds(0, count), 0, threads);
     }
 
     Shape collapse(std::uint32_t root)
@@ -128,8 +115,8 @@ class Splitter {
     static constexpr int most_bins = 16;
 
     struct Bins {
-        Box box[3][most_bins];
-        std::uint32_t count[3][most_bins] = {};
+        Box box[3];
+        std::uint32_t count[3] = {};
     };
     struct Range {
         std::uint32_t begin, end, split;
@@ -138,6 +125,45 @@ class Splitter {
         float cost = infinity;
         int axis = -1, bin = 0; ///< bins up to and including `bin` go left
     };
+    /// Where a range was split, and the bounds of the two parts.
+    struct Halves {
+        std::uint32_t middle = 0; ///< 0: not split
+        Bounds left, right;
+    };
+
+    [[nodiscard]] Bounds bounds(std::uint32_t begin, std::uint32_t end) const
+    {
+        Bounds result;
+        for (std::uint32_t i = begin; i < end; i++)
+            result.add(boxes_[i]);
+        return result;
+    }
+
+    Subtree divide(std::uint32_t begin, std::uint32_t end, const Bounds& bounds, int depth, unsigned threads)
+    {
+        const std::uint32_t count = end - begin;
+        if (count <= leaf_size_)
+            return {};
+        Halves halves;
+        if (depth < balanced_depth)
+            halves = partition(begin, end, bounds.centres);
+        if (halves.middle == 0)
+            halves = halve(begin, end, bounds.centres);
+        const std::uint32_t middle = halves.middle;
+        Subtree left, right;
+        auto go_left = [&, this] { left = divide(begin, middle, halves.left, depth + 1, threads / 2); };
+        auto go_right = [&, this] {
+            right = divide(middle, end, halves.right, depth + 1, threads - threads / 2);
+        };
+        constexpr std::uint32_t worth_a_thread = 8192;
+        if (threads > 1 && count > worth_a_thread) {
+            fork_join(go_left, go_right);
+        } else {
+            go_left();
+            go_right();
+        }
+        return join(middle, bounds.box.area(), left, right);
+    }
 
     /// Notes the node and how it is best collapsed. A node costs as much as it is likely to be visited: its
     /// surface. The leaves are what they are.
@@ -177,7 +203,7 @@ class Splitter {
         return static_cast<float>((count + leaf_size_ - 1) / leaf_size_);
     }
 
-    void fill(Bins& bins, std::uint32_t begin, std::uint32_t end, Float4 origin, Float4 scale, int last) const
+    void fill(Bins* bins, std::uint32_t begin, std::uint32_t end, Float4 origin, Float4 scale, int last) const
     {
         const Int4 top = {last, last, last, 0};
         for (std::uint32_t i = begin; i < end; i++) {
@@ -185,65 +211,80 @@ class Splitter {
             Int4 bin = __builtin_convertvector((low + high - origin) * scale, Int4);
             bin = bin < top ? bin : top;
             for (int axis = 0; axis < 3; axis++) {
-                bins.box[axis][bin[axis]].grow(low, high);
-                bins.count[axis][bin[axis]]++;
+                bins[bin[axis]].box[axis].grow(low, high);
+                bins[bin[axis]].count[axis]++;
             }
         }
     }
 
     /// The cheapest cut along one axis: sweeps from the right for the costs there, then from the left.
-    void sweep(const Bins& bins, int axis, int last, Cut& best) const
+    void sweep(const Bins* bins, int axis, int last, Cut& best) const
     {
         float right_cost[most_bins];
         Box box;
         std::uint32_t count = 0;
         for (int b = last; b > 0; b--) {
-            box.grow(bins.box[axis][b].low, bins.box[axis][b].high);
-            count += bins.count[axis][b];
+            box.grow(bins[b].box[axis].low, bins[b].box[axis].high);
+            count += bins[b].count[axis];
             right_cost[b] = count ? box.area() * leaves(count) : infinity;
         }
         box = {};
         count = 0;
         for (int b = 0; b < last; b++) {
-            box.grow(bins.box[axis][b].low, bins.box[axis][b].high);
-            count += bins.count[axis][b];
+            box.grow(bins[b].box[axis].low, bins[b].box[axis].high);
+            count += bins[b].count[axis];
             const float cost = count ? box.area() * leaves(count) + right_cost[b + 1] : infinity;
             if (cost < best.cost)
                 best = {cost, axis, b};
         }
     }
 
-    /// Splits by the heuristic; 0 if it knows no split (all centres in one place).
-    std::uint32_t partition(std::uint32_t begin, std::uint32_t end, const Box& centres)
+    /// Splits by the heuristic, unless it knows no split (all centres in one place).
+    Halves partition(std::uint32_t begin, std::uint32_t end, const Box& centres)
     {
         const std::uint32_t count = end - begin;
-        const int bin_count = count > 256 ? most_bins : 8;
-        const Float4 extent = centres.high - centres.low;
+        const int bin_count = count > 256 ? most_bins : most_bins / 2;
+        const Float4 origin = centres.low, extent = centres.high - centres.low;
         Float4 scale{};
         for (int axis = 0; axis < 3; axis++)
             if (extent[axis] > 0)
                 scale[axis] = static_cast<float>(bin_count) / extent[axis];
-        const Float4 origin = centres.low;
-        Bins bins;
+        Bins bins[most_bins];
         fill(bins, begin, end, origin, scale, bin_count - 1);
         Cut best;
         for (int axis = 0; axis < 3; axis++)
             if (extent[axis] > 0)
                 sweep(bins, axis, bin_count - 1, best);
         if (best.axis < 0)
-            return 0;
+            return {};
         const int axis = best.axis;
-        const auto middle =
-            std::partition(boxes_.begin() + begin, boxes_.begin() + end, [&](const PrimitiveBox& b) {
-                const float place = (b.low[axis] + b.high[axis] - origin[axis]) * scale[axis];
-                return std::min(static_cast<int>(place), bin_count - 1) <= best.bin;
-            });
-        const auto split = static_cast<std::uint32_t>(middle - boxes_.begin());
-        return split == begin || split == end ? 0 : split;
+        return arrange(begin, end, [&](const PrimitiveBox& b) {
+            const float place = (b.low[axis] + b.high[axis] - origin[axis]) * scale[axis];
+            return std::min(static_cast<int>(place), bin_count - 1) <= best.bin;
+        });
+    }
+
+    /// Moves those that go left to the front.
+    template <class GoesLeft>
+    Halves arrange(std::uint32_t begin, std::uint32_t end, const GoesLeft& goes_left)
+    {
+        Halves result;
+        std::uint32_t i = begin, j = end;
+        for (;;) {
+            for (; i < j && goes_left(boxes_[i]); i++)
+                result.left.add(boxes_[i]);
+            for (; i < j && !goes_left(boxes_[j - 1]); j--)
+                result.right.add(boxes_[j - 1]);
+            if (i == j)
+                break;
+            std::swap(boxes_[i], boxes_[j - 1]);
+        }
+        result.middle = i == begin || i == end ? 0 : i;
+        return result;
     }
 
     /// Splits by count, along the widest axis of the centres, at a whole number of leaves.
-    std::uint32_t halve(std::uint32_t begin, std::uint32_t end, const Box& centres)
+    Halves halve(std::uint32_t begin, std::uint32_t end, const Box& centres)
     {
         const Float4 extent = centres.high - centres.low;
         int axis = extent[1] > extent[0] ? 1 : 0;
@@ -255,7 +296,7 @@ class Splitter {
                              const float x = a.low[axis] + a.high[axis], y = b.low[axis] + b.high[axis];
                              return x != y ? x < y : a.index < b.index;
                          });
-        return middle;
+        return {middle, bounds(begin, middle), bounds(middle, end)};
     }
 
     /// Appends the roots of the best forest of at most `trees` made of a range.
@@ -304,7 +345,7 @@ Shape split(std::span<PrimitiveBox> boxes, unsigned leaf_size, unsigned threads)
     if (boxes.empty())
         return {};
     Splitter splitter(boxes, leaf_size);
-    const std::uint32_t root = splitter.divide(0, static_cast<std::uint32_t>(boxes.size()), 0, threads).split;
+    const std::uint32_t root = splitter.divide(threads).split;
     return splitter.collapse(root);
 }
 
