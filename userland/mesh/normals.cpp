@@ -67,13 +67,14 @@ CornerGroups group_corners(const Soup& soup, const std::vector<Triple>& neighbou
                            const std::vector<Vec3>& face_normals, double crease_deg, Report& report)
 {
     CornerGroups groups(3 * soup.faces.size());
-    const double crease = crease_deg * std::numbers::pi / 180.0;
+    // At 180 degrees nothing is a crease, whatever rounding makes of two opposite normals.
+    const double crease_cosine = crease_deg < 180.0 ? std::cos(crease_deg * std::numbers::pi / 180.0) : -2.0;
     for (std::uint32_t f = 0; f < soup.faces.size(); ++f) {
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t other = neighbours[f][i];
             if (other == no_neighbour || other < f)
                 continue; // each edge once, from its lower face
-            if (angle_between(face_normals[f], face_normals[other]) > crease) {
+            if (dot(face_normals[f], face_normals[other]) < crease_cosine) {
                 ++report.crease_edges;
                 continue;
             }

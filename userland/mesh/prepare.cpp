@@ -76,15 +76,6 @@ Status fit(Soup& soup, double fit_mm, const std::string& name)
     return success();
 }
 
-/// Turning faces can make two of them equal, and dropping one can give an edge its two faces: until
-/// nothing changes. Each further round has fewer faces, so it ends.
-void agree_on_sense(Soup& soup, Report& report)
-{
-    drop_duplicates(soup, report);
-    while (orient(soup, report) > 0 && drop_duplicates(soup, report) > 0) {
-    }
-}
-
 Error no_usable_face(const Report& report, const std::string& name)
 {
     return Error{name, fmt::format("has no usable face: {} without area, {} not finite, of {}",
@@ -123,7 +114,7 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
         weld(soup, options.weld_mm, report);
         drop_degenerate(soup, report);
         progress(0.3);
-        agree_on_sense(soup, report);
+        orient(soup, report);
         progress(0.6);
         if (options.split_mm > 0) {
             if (const auto status = split_long_edges(soup, options.split_mm, name, report); !status)
@@ -133,7 +124,8 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
             return no_usable_face(report, name);
     }
     Mesh mesh;
-    mesh.neighbours = neighbours_of(soup, report);
+    const EdgeIndex edges(soup.faces, soup.vertices.size());
+    mesh.neighbours = neighbours_of(soup, edges, report);
     progress(0.8);
     if (options.full)
         corner_normals(soup, mesh.neighbours, options.crease_deg, report);
@@ -143,7 +135,7 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     mesh.faces = std::move(soup.faces);
     mesh.normals = std::move(soup.normals);
     mesh.face_normals = std::move(soup.face_normals);
-    finish_report(mesh, report);
+    finish_report(mesh, edges, report);
     progress(1);
     return Prepared{std::move(mesh), std::move(report)};
 }

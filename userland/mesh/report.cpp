@@ -11,14 +11,13 @@ namespace phantom::mesh {
 
 namespace {
 
-void measure_edges(const Mesh& mesh, Report& report)
+void measure_edges(const Mesh& mesh, const EdgeIndex& edges, Report& report)
 {
     std::vector<double> sizes;
     sizes.reserve(3 * mesh.faces.size() / 2);
-    for_each_edge(mesh.faces, mesh.vertices.size(),
-                  [&](std::uint32_t low, std::uint32_t high, std::span<const HalfEdge>) {
-                      sizes.push_back(distance(mesh.vertices[low], mesh.vertices[high]));
-                  });
+    edges.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const HalfEdge>) {
+        sizes.push_back(distance(mesh.vertices[low], mesh.vertices[high]));
+    });
     if (sizes.empty())
         return;
     const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
@@ -60,11 +59,11 @@ void warn_defects(Report& report)
 
 } // namespace
 
-void finish_report(const Mesh& mesh, Report& report)
+void finish_report(const Mesh& mesh, const EdgeIndex& edges, Report& report)
 {
     report.vertices = mesh.vertices.size();
     report.faces = mesh.faces.size();
-    measure_edges(mesh, report);
+    measure_edges(mesh, edges, report);
     const Bounds bounds = bounds_of(mesh.vertices);
     for (std::size_t axis = 0; axis < 3; ++axis)
         report.size_mm[axis] = bounds.high[axis] - bounds.low[axis];

@@ -5,6 +5,7 @@
 // faces that would make it non-manifold, and here every face must be kept or counted.
 #pragma once
 
+#include "mesh/edge_index.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/prepare.hpp"
 
@@ -18,23 +19,42 @@ void weld(Soup& soup, double weld_mm, Report& report);
 /// over the longest side below 1e-12 of it (rounding of the coordinates themselves).
 void drop_degenerate(Soup& soup, Report& report);
 
-/// Drops faces with the same three corners in the same sense as an earlier one; returns how many.
-std::uint64_t drop_duplicates(Soup& soup, Report& report);
-
-/// Turns faces so that neighbours agree (the fewer of a component are turned), then every closed component
-/// whose signed volume is negative. Returns how many faces were turned in all.
-std::uint64_t orient(Soup& soup, Report& report);
+/// Drops faces with the same three corners in the same sense as an earlier one, and turns faces so that
+/// neighbours agree (the fewer of a component are turned), then every closed component whose signed volume is
+/// negative.
+void orient(Soup& soup, Report& report);
 
 /// Bisects edges longer than split_mm, longest first, in every face that has them (no T-junctions).
 /// Fails when that would give more than 20 million faces. Children take their parent's place in the order.
 Status split_long_edges(Soup& soup, double split_mm, const std::string& name, Report& report);
 
 /// Faces over each edge; none across an edge of more than two faces or of two that disagree. Counts edges.
-std::vector<Triple> neighbours_of(const Soup& soup, Report& report);
+std::vector<Triple> neighbours_of(const Soup& soup, const EdgeIndex& edges, Report& report);
 
 /// Angle-weighted normals per corner, faces round a vertex grouped up to creases; a normal of the
 /// file stays where it fits its face.
 void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double crease_deg, Report& report);
+
+/// Removes the faces for which drop(number of the face) holds; the rest stays in order. Returns how many.
+template <typename Drop>
+std::uint64_t remove_faces(Soup& soup, Drop&& drop)
+{
+    const bool with_normals = !soup.face_normals.empty();
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+        if (drop(f))
+            continue;
+        soup.faces[kept] = soup.faces[f];
+        if (with_normals)
+            soup.face_normals[kept] = soup.face_normals[f];
+        ++kept;
+    }
+    const std::uint64_t dropped = soup.faces.size() - kept;
+    soup.faces.resize(kept);
+    if (with_normals)
+        soup.face_normals.resize(kept);
+    return dropped;
+}
 
 /// Normals of `--prepare none`: angle-weighted over all faces with the same vertex number, no crease.
 void vertex_normals(Soup& soup);
@@ -43,6 +63,6 @@ void vertex_normals(Soup& soup);
 Vec3 face_normal(const Soup& soup, const Triple& face);
 
 /// Sizes, edge lengths, and the warnings that name an option.
-void finish_report(const Mesh& mesh, Report& report);
+void finish_report(const Mesh& mesh, const EdgeIndex& edges, Report& report);
 
 } // namespace phantom::mesh

@@ -182,6 +182,8 @@ class Folder {
     std::filesystem::path write(const std::string& name, const std::string& bytes) const
     {
         const auto file = path_ / name;
+        // Truncating an old file and closing it makes some file systems write it out at once.
+        std::filesystem::remove(file);
         std::ofstream(file, std::ios::binary) << bytes;
         return file;
     }

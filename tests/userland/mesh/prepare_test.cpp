@@ -216,6 +216,23 @@ TEST(MeshPrepare, MoebiusStripEndsAndIsReported)
     EXPECT_FALSE(out.report.watertight);
 }
 
+TEST(MeshPrepare, UnorientableStripsAreIdempotentToo)
+{
+    std::mt19937 random(5);
+    for (int round = 0; round < 20; ++round) {
+        Soup soup = moebius(40);
+        for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+            if (random() % 2)
+                turn(soup, f);
+        }
+        const Prepared once = prepared(soup);
+        EXPECT_EQ(once.report.unorientable_edges, 1U);
+        const Prepared twice = prepared(soup_of(once.mesh));
+        EXPECT_EQ(twice.mesh.faces, once.mesh.faces);
+        EXPECT_EQ(twice.report.faces_flipped, 0U);
+    }
+}
+
 TEST(MeshPrepare, OppositeCoincidentFacesAreBothKept)
 {
     Soup soup;
