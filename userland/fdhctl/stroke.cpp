@@ -76,12 +76,12 @@ Run add_stroke(CLI::App& app)
         ->check(CLI::Range(10.0, double{PHANTOM_RATE_MAX_HZ}))
         ->type_name("HZ")
         ->capture_default_str();
-    app.add_option("--depth", options->stroke.depth_mm, "how deep below the surface it presses")
-        ->check(CLI::Range(-1e3, 1e3))
-        ->type_name("MM")
-        ->capture_default_str();
+    app.add_option("--depth", options->stroke.depth_mm,
+                   "how deep it presses in, at six places; 0: nowhere [half the contact radius]")
+        ->check(CLI::Range(0.0, 1e3))
+        ->type_name("MM");
     app.add_option("--height", options->stroke.height_mm,
-                   "how high above the surface it rises in between [half the contact radius]")
+                   "how high above the surface the sweeps are, negative below it [0.4 of the contact radius]")
         ->check(CLI::Range(-1e3, 1e3))
         ->type_name("MM");
     app.add_option("--speed-limit", options->stroke.speed_limit_mm_s, "the tip is never faster")

@@ -29,8 +29,36 @@ constexpr double step_part = 1.0 / 1500.0;
 constexpr int waypoints = 60;
 constexpr double footprint_part = 0.36;
 
-/// Between deepest and highest the stroke goes once in this part of its way.
-constexpr double wave_part = 0.25;
+/// Places where the tip presses in, and how much slower it moves there than in a sweep.
+constexpr std::size_t presses = 6;
+constexpr double press_slowness = 6.0;
+
+/// A polyline by the part of its length; parts must not fall from call to call.
+class Along {
+  public:
+    explicit Along(const std::vector<Vector>& line) : line_(&line), way_(line.size(), 0.0)
+    {
+        for (std::size_t i = 1; i < line.size(); ++i)
+            way_[i] = way_[i - 1] + length(line[i] - line[i - 1]);
+    }
+    Vector at(double part)
+    {
+        const std::vector<Vector>& line = *line_;
+        if (line.size() < 2)
+            return line.front();
+        const double gone = part * way_.back();
+        while (segment_ + 2 < line.size() && way_[segment_ + 1] < gone)
+            ++segment_;
+        const double span = way_[segment_ + 1] - way_[segment_];
+        const double t = span > 0 ? std::clamp((gone - way_[segment_]) / span, 0.0, 1.0) : 0.0;
+        return line[segment_] + t * (line[segment_ + 1] - line[segment_]);
+    }
+
+  private:
+    const std::vector<Vector>* line_;
+    std::vector<double> way_;
+    std::size_t segment_ = 0;
+};
 
 class Stroke {
   public:
@@ -50,9 +78,7 @@ class Stroke {
             return Error{"", "no surface is seen from above (+z)",
                          "turn the object with a pose in a scene file"};
         walk();
-        std::vector<Vector> line = lifted();
-        smooth(line);
-        return timed(line);
+        return timed(with_presses(lifted()));
     }
 
   private:
@@ -71,10 +97,12 @@ class Stroke {
         }
     }
 
-    /// How long the walk may be, approach and lift included.
+    /// How long the walk may be, approach and lift included; pressing takes its share of the time.
     double length_wanted() const
     {
-        return speed_part * options_.speed_limit_mm_s * options_.seconds * (1.0 - ease_part);
+        const double pressing_mm = 4.0 * presses * press_slowness * radius_mm_;
+        const double whole_mm = speed_part * options_.speed_limit_mm_s * options_.seconds * (1.0 - ease_part);
+        return std::max(0.2 * whole_mm, whole_mm - pressing_mm);
     }
 
     double clearance_mm() const { return 2.0 * radius_mm_ + 0.05 * bounds_.extent(); }
@@ -115,28 +143,66 @@ class Stroke {
         }
     }
 
-    /// The walk at its heights, with the way down and the way up.
-    std::vector<Vector> lifted() const
-    {
-        const double high = options_.height_mm.value_or(0.5 * radius_mm_), low = -options_.depth_mm;
+    /// A way from rest to rest. Slowness stretches its share of the time.
+    struct Piece {
         std::vector<Vector> line;
+        double slowness = 1.0;
+
+        [[nodiscard]] double way_mm() const
+        {
+            double sum = 0;
+            for (std::size_t i = 1; i < line.size(); ++i)
+                sum += length(line[i] - line[i - 1]);
+            return sum;
+        }
+    };
+
+    /// The walk at its height, smoothed, with the way down before it and the way up behind it.
+    struct Lifted {
+        std::vector<Vector> line;
+        std::size_t first = 0; ///< of the walk in line
+    };
+    Lifted lifted() const
+    {
+        const double height = options_.height_mm.value_or(0.4 * radius_mm_);
+        Lifted out;
         const auto climb = [&](const Vector& from, const Vector& to) {
             const int pieces = std::max(1, static_cast<int>(length(to - from) / step_mm_));
             for (int i = 0; i < pieces; ++i)
-                line.push_back(from + (static_cast<double>(i) / pieces) * (to - from));
+                out.line.push_back(from + (static_cast<double>(i) / pieces) * (to - from));
         };
-        const auto at = [&](std::size_t i) {
-            const double wave = std::cos(2.0 * std::numbers::pi * static_cast<double>(i) /
-                                         (wave_part * static_cast<double>(walk_.size())));
-            return walk_[i].position_mm + (0.5 * (high + low) + 0.5 * (high - low) * wave) * walk_[i].normal;
-        };
-        climb(walk_.front().position_mm + clearance_mm() * up, at(0));
-        for (std::size_t i = 0; i < walk_.size(); ++i)
-            line.push_back(at(i));
-        const SurfacePoint& end = walk_.back();
-        climb(at(walk_.size() - 1), end.position_mm + clearance_mm() * end.normal);
-        line.push_back(end.position_mm + clearance_mm() * end.normal);
-        return line;
+        const auto at = [&](const SurfacePoint& point) { return point.position_mm + height * point.normal; };
+        climb(walk_.front().position_mm + clearance_mm() * up, at(walk_.front()));
+        out.first = out.line.size();
+        for (const SurfacePoint& point : walk_)
+            out.line.push_back(at(point));
+        const Vector away = walk_.back().position_mm + clearance_mm() * walk_.back().normal;
+        climb(at(walk_.back()), away);
+        out.line.push_back(away);
+        smooth(out.line);
+        return out;
+    }
+
+    /// Cuts the way at a few places of the walk and presses in there: straight down and back, so that the
+    /// proxy has nowhere to go but where the tip came in.
+    std::vector<Piece> with_presses(const Lifted& lifted) const
+    {
+        const double depth = options_.depth_mm.value_or(0.5 * radius_mm_);
+        std::vector<Piece> pieces(1);
+        std::size_t pressed = 0;
+        for (std::size_t i = 0; i < lifted.line.size(); ++i) {
+            pieces.back().line.push_back(lifted.line[i]);
+            const std::size_t place = lifted.first + (2 * pressed + 1) * walk_.size() / (2 * presses);
+            if (depth == 0 || pressed == presses || i != place)
+                continue;
+            const SurfacePoint& under = walk_[i - lifted.first];
+            const Vector deep = under.position_mm - depth * under.normal;
+            pieces.push_back({{lifted.line[i], deep}, press_slowness});
+            pieces.push_back({{deep, lifted.line[i]}, press_slowness});
+            pieces.push_back({{lifted.line[i]}, 1.0});
+            ++pressed;
+        }
+        return pieces;
     }
 
     /// Running means over a few steps, three times: nearly Gaussian, ends fixed.
@@ -171,29 +237,37 @@ class Stroke {
         return (part - 0.5 * ease_part) / whole;
     }
 
-    Result<feeder::Path> timed(const std::vector<Vector>& line) const
+    /// Rows of the whole: every piece gets its share of the time.
+    Result<feeder::Path> timed(const std::vector<Piece>& pieces) const
     {
-        std::vector<double> way(line.size(), 0.0);
-        for (std::size_t i = 1; i < line.size(); ++i)
-            way[i] = way[i - 1] + length(line[i] - line[i - 1]);
-        const double speed = way.back() / (options_.seconds * (1.0 - ease_part));
+        double weight = 0;
+        for (const Piece& piece : pieces)
+            weight += piece.way_mm() * piece.slowness;
+        const double speed = weight / (options_.seconds * (1.0 - ease_part));
         if (speed > options_.speed_limit_mm_s)
             return Error{"",
-                         fmt::format("a stroke of {:.0f} mm in {:g} s needs {:.0f} mm/s, the limit is {:g}",
-                                     way.back(), options_.seconds, speed, options_.speed_limit_mm_s),
+                         fmt::format("the stroke needs {:.0f} mm/s, the limit is {:g}", speed,
+                                     options_.speed_limit_mm_s),
                          "more --seconds, or a higher --speed-limit"};
         const auto rows = static_cast<std::size_t>(std::llround(options_.seconds * options_.rate_hz)) + 1;
         feeder::Path path;
         path.reserve(rows);
-        std::size_t piece = 0;
+        std::size_t current = 0;
+        double begin_s = 0;
+        const auto span_s = [&] {
+            return options_.seconds * pieces[current].way_mm() * pieces[current].slowness / weight;
+        };
+        Along along(pieces[0].line);
+        double piece_s = span_s();
         for (std::size_t row = 0; row < rows; ++row) {
             const double time_s = static_cast<double>(row) / options_.rate_hz;
-            const double gone = way.back() * eased(std::min(1.0, time_s / options_.seconds));
-            while (piece + 2 < line.size() && way[piece + 1] < gone)
-                ++piece;
-            const double span = way[piece + 1] - way[piece];
-            const double t = span > 0 ? std::clamp((gone - way[piece]) / span, 0.0, 1.0) : 0.0;
-            path.push_back({time_s, line[piece] + t * (line[piece + 1] - line[piece])});
+            while (time_s > begin_s + piece_s && current + 1 < pieces.size()) {
+                begin_s += piece_s;
+                along = Along(pieces[++current].line);
+                piece_s = span_s();
+            }
+            const double part = piece_s > 0 ? std::clamp((time_s - begin_s) / piece_s, 0.0, 1.0) : 1.0;
+            path.push_back({time_s, along.at(eased(part))});
         }
         return path;
     }

@@ -14,15 +14,18 @@ namespace phantom::study {
 struct StrokeOptions {
     double seconds = 12.0;
     double rate_hz = 1000.0; ///< rows per second
-    double depth_mm = 0.5;   ///< how deep below the surface the stroke presses
-    /// How high above the surface it rises between pressing; half the largest contact radius when not given.
+    /// How deep the tip presses in, straight and back, at a few places of the stroke; 0: it does not. Half
+    /// the largest contact radius when not given.
+    std::optional<double> depth_mm{};
+    /// How high above the surface the sweeps are, negative below it; 0.4 of the largest contact radius when
+    /// not given.
     std::optional<double> height_mm{};
     double speed_limit_mm_s = 60.0;
 };
 
-/// From above (+z) down to the surface, over it in sweeps, and away again. It walks on the surface itself:
-/// the nearest triangle, found with the hulls, holds it at every step. Smooth in position and speed, at rest
-/// at both ends. Fails where nothing of the scene is seen from above.
+/// From above (+z) down to the surface, over it in sweeps, pressing now and then, and away again. It walks on
+/// the surface itself: the nearest triangle, found with the hulls, holds it at every step. Smooth in position
+/// and speed, at rest at both ends. Fails where nothing of the scene is seen from above.
 Result<feeder::Path> make_stroke(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
                                  const StrokeOptions& options);
 
