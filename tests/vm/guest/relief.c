@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The relief and the sets that are cut out of it.
+#include <math.h>
+#include <string.h>
+
+#include "relief.h"
+
+#define HALF_NM ((double)RELIEF_CELLS * RELIEF_CELL_NM / 2)
+/* Bumps 1 mm high; their radius of curvature, some 4 mm, is larger than the contact radius. */
+#define HEIGHT_NM 1e6
+#define WAVES_X (2 * M_PI / 14e6)
+#define WAVES_Y (2 * M_PI / 17e6)
+
+double relief_height_nm(double x_nm, double y_nm)
+{
+    return HEIGHT_NM * sin(WAVES_X * x_nm) * cos(WAVES_Y * y_nm);
+}
+
+/* The corner of four cells, relative to the origin. */
+static void put_corner(struct phantom_patch* patch, int corner, int column, int row,
+                       const int64_t origin_nm[3])
+{
+    double x = column * (double)RELIEF_CELL_NM - HALF_NM;
+    double y = row * (double)RELIEF_CELL_NM - HALF_NM;
+    double slope_x = HEIGHT_NM * WAVES_X * cos(WAVES_X * x) * cos(WAVES_Y * y);
+    double slope_y = -HEIGHT_NM * WAVES_Y * sin(WAVES_X * x) * sin(WAVES_Y * y);
+    double scale = PHANTOM_Q30_ONE / sqrt(slope_x * slope_x + slope_y * slope_y + 1);
+
+    patch->vertex_nm[corner][0] = (int32_t)(llrint(x) - origin_nm[0]);
+    patch->vertex_nm[corner][1] = (int32_t)(llrint(y) - origin_nm[1]);
+    patch->vertex_nm[corner][2] = (int32_t)(llrint(relief_height_nm(x, y)) - origin_nm[2]);
+    patch->normal_q30[corner][0] = (int32_t)lrint(-slope_x * scale);
+    patch->normal_q30[corner][1] = (int32_t)lrint(-slope_y * scale);
+    patch->normal_q30[corner][2] = (int32_t)lrint(scale);
+    patch->vertex[corner] = (uint32_t)(row * (RELIEF_CELLS + 1) + column);
+}
+
+/* Index in the window; upper is the triangle at the cell's far corner. */
+static uint32_t index_of(int column, int row, int upper)
+{
+    if (column < 0 || row < 0 || column >= RELIEF_WINDOW || row >= RELIEF_WINDOW)
+        return PHANTOM_PATCH_NONE;
+    return (uint32_t)(2 * (row * RELIEF_WINDOW + column) + upper);
+}
+
+static void put_cell(struct relief_set* relief, int column, int row, int first_column, int first_row)
+{
+    struct phantom_patch* lower = &relief->patches[index_of(column, row, 0)];
+    struct phantom_patch* upper = &relief->patches[index_of(column, row, 1)];
+    const int64_t origin_nm[3] = {relief->set.origin_nm[0], relief->set.origin_nm[1],
+                                  relief->set.origin_nm[2]};
+    int c = first_column + column;
+    int r = first_row + row;
+
+    put_corner(lower, 0, c, r, origin_nm);
+    put_corner(lower, 1, c + 1, r, origin_nm);
+    put_corner(lower, 2, c, r + 1, origin_nm);
+    lower->neighbour[0] = index_of(column, row - 1, 1);
+    lower->neighbour[1] = index_of(column, row, 1);
+    lower->neighbour[2] = index_of(column - 1, row, 1);
+    lower->face = (uint32_t)(2 * (r * RELIEF_CELLS + c));
+    put_corner(upper, 0, c, r + 1, origin_nm);
+    put_corner(upper, 1, c + 1, r, origin_nm);
+    put_corner(upper, 2, c + 1, r + 1, origin_nm);
+    upper->neighbour[0] = index_of(column, row, 0);
+    upper->neighbour[1] = index_of(column + 1, row, 0);
+    upper->neighbour[2] = index_of(column, row + 1, 0);
+    upper->face = lower->face + 1;
+}
+
+void relief_cut(struct relief_set* relief, uint64_t id, const int64_t tip_nm[3])
+{
+    int first_column = (int)floor(((double)tip_nm[0] + HALF_NM) / RELIEF_CELL_NM) - RELIEF_WINDOW / 2;
+    int first_row = (int)floor(((double)tip_nm[1] + HALF_NM) / RELIEF_CELL_NM) - RELIEF_WINDOW / 2;
+
+    memset(relief, 0, sizeof(*relief));
+    relief->set.id = id;
+    for (int axis = 0; axis < 3; axis++)
+        relief->set.origin_nm[axis] = tip_nm[axis];
+    relief->set.radius_nm = RELIEF_COVERAGE_NM;
+    relief->set.patch_count = RELIEF_PATCHES;
+    relief->set.material_count = 1;
+    relief->set.object_count = 1;
+    relief->set.patches = (uintptr_t)relief->patches;
+    relief->set.materials = (uintptr_t)&relief->material;
+    relief->set.objects = (uintptr_t)&relief->object;
+    relief->material.stiffness_mn_mm = 800;
+    relief->material.radius_nm = RELIEF_RADIUS_NM;
+    relief->object.rotation_q30[0] = PHANTOM_Q30_ONE;
+    for (int row = 0; row < RELIEF_WINDOW; row++)
+        for (int column = 0; column < RELIEF_WINDOW; column++)
+            put_cell(relief, column, row, first_column, first_row);
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/*
+ * relief.h - a curved scene to touch: the surface z = h(x, y) of bumps, 60 mm wide, in 1152 triangles with
+ * analytic normals, and sets cut out of it round a tip, as a feeder does.
+ */
+#ifndef VM_RELIEF_H
+#define VM_RELIEF_H
+
+#include <stdint.h>
+
+#include "phantom_abi.h"
+
+#define RELIEF_CELLS 24
+#define RELIEF_CELL_NM 2500000
+#define RELIEF_WINDOW 5 /* cells of a set, each way */
+#define RELIEF_PATCHES (2 * RELIEF_WINDOW * RELIEF_WINDOW)
+/* Smaller than the distance from the middle cell to the window's rim. */
+#define RELIEF_COVERAGE_NM (2 * RELIEF_CELL_NM)
+#define RELIEF_RADIUS_NM 1500000
+
+struct relief_set {
+    struct phantom_set set;
+    struct phantom_patch patches[RELIEF_PATCHES];
+    struct phantom_material material;
+    struct phantom_object object;
+};
+
+/* Height of the surface above z = 0, nm. */
+double relief_height_nm(double x_nm, double y_nm);
+/* The set round that tip, which must lie above or below the surface and at least three cells inside its rim.
+ */
+void relief_cut(struct relief_set* relief, uint64_t id, const int64_t tip_nm[3]);
+
+#endif /* VM_RELIEF_H */
