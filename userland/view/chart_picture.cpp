@@ -21,9 +21,9 @@ Status save_chart(const std::deque<Touch>& samples, std::optional<double> marked
     vtkNew<vtkRenderer> renderer;
     renderer->SetBackground(palette::panel[0], palette::panel[1], palette::panel[2]);
     ForceChart chart(renderer, ForceChart::Lines::norm_and_components);
-    chart.set_size(width, height);
     const int font_px = std::max(width / 85, 10 * picture_oversampling);
     chart.set_scale(font_px, font_px / 15.0);
+    chart.set_size(width, height);
     chart.mark(marked_s);
     chart.show(samples, samples.front().time_s, samples.back().time_s, 0.01);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <vtkAxis.h>
 #include <vtkBrush.h>
 #include <vtkChartLegend.h>
@@ -11,6 +12,7 @@
 #include <vtkDoubleArray.h>
 #include <vtkPen.h>
 #include <vtkPlot.h>
+#include <vtkStringArray.h>
 #include <vtkTextProperty.h>
 
 #include "view/colour.hpp"
@@ -63,25 +65,38 @@ vtkSmartPointer<vtkDoubleArray> column(const char* name)
     return array;
 }
 
-/// 1, 2 or 5 times a power of ten, not below x: a round top for an axis.
+/// A round number not below x: the distance between ticks.
 double round_up(double x)
 {
     const double decade = std::pow(10.0, std::floor(std::log10(x)));
-    for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+    for (const double step : {1.0, 2.0, 5.0})
         if (step * decade >= x * (1 - 1e-9))
             return step * decade;
     return 10 * decade;
 }
 
-void style_axis(vtkAxis* axis, const char* title)
+/// Ticks at multiples of `step` in the range. VTK's own choice counts on a fixed font size.
+void set_ticks(vtkAxis* axis, double low, double high, double step)
 {
-    axis->SetTitle(title);
-    axis->SetBehavior(vtkAxis::FIXED);
-    for (vtkTextProperty* text : {axis->GetTitleProperties(), axis->GetLabelProperties()}) {
-        text->SetFontFamilyToArial();
-        text->BoldOff();
-        set_colour(text, palette::ink);
+    vtkNew<vtkDoubleArray> positions;
+    vtkNew<vtkStringArray> labels;
+    // + 0.0: ceil may give -0.
+    for (double i = std::ceil(low / step - 1e-6) + 0.0; i * step <= high + 1e-6 * step; ++i) {
+        positions->InsertNextValue(i * step);
+        labels->InsertNextValue(fmt::format("{:g}", i * step));
     }
+    axis->SetRange(low, high);
+    axis->SetCustomTickPositions(positions, labels);
+}
+
+void style_axis(vtkAxis* axis)
+{
+    axis->SetTitle("");
+    axis->SetBehavior(vtkAxis::FIXED);
+    vtkTextProperty* text = axis->GetLabelProperties();
+    text->SetFontFamilyToArial();
+    text->BoldOff();
+    set_colour(text, palette::ink);
     const auto byte = [](double part) { return static_cast<unsigned char>(std::lround(255 * part)); };
     const auto& rule = palette::rule;
     axis->GetGridPen()->SetColor(byte(0.90), byte(0.91), byte(0.925));
@@ -90,15 +105,15 @@ void style_axis(vtkAxis* axis, const char* title)
 
 } // namespace
 
-ForceChart::ForceChart(vtkRenderer* renderer, Lines lines) : lines_(lines)
+ForceChart::ForceChart(vtkRenderer* renderer, Lines lines) : lines_(lines), words_(renderer)
 {
     for (const char* name : column_names)
         table_->AddColumn(column(name));
     marker_->AddColumn(column("time, s"));
     marker_->AddColumn(column("shown"));
 
-    style_axis(chart_->GetAxis(vtkAxis::BOTTOM), "time, s");
-    style_axis(chart_->GetAxis(vtkAxis::LEFT), "force, N");
+    style_axis(chart_->GetAxis(vtkAxis::BOTTOM));
+    style_axis(chart_->GetAxis(vtkAxis::LEFT));
     add_line(1, palette::ink, "magnitude");
     if (lines == Lines::norm_and_components) {
         add_line(2, palette::component_x, "x");
@@ -134,14 +149,15 @@ void ForceChart::add_line(int column, const Colour& colour, const char* name)
 
 void ForceChart::set_scale(int font_px, double line_px)
 {
+    font_px_ = font_px;
     const auto width = static_cast<float>(line_px);
     for (const int place : {vtkAxis::BOTTOM, vtkAxis::LEFT}) {
         vtkAxis* axis = chart_->GetAxis(place);
-        axis->GetTitleProperties()->SetFontSize(font_px);
         axis->GetLabelProperties()->SetFontSize(font_px);
         axis->GetPen()->SetWidth(width);
         axis->GetGridPen()->SetWidth(width);
         axis->SetTickLength(4 * width);
+        axis->SetLabelOffset(7 * width);
     }
     vtkChartLegend* legend = chart_->GetLegend();
     legend->GetLabelProperties()->SetFontSize(font_px);
@@ -153,7 +169,12 @@ void ForceChart::set_scale(int font_px, double line_px)
 
 void ForceChart::set_size(int width, int height)
 {
-    chart_->SetSize(vtkRectf(0, 0, static_cast<float>(width), static_cast<float>(height)));
+    // Half a label stands out at the right and at the top; the words go above.
+    const auto font = static_cast<float>(font_px_);
+    const auto w = static_cast<float>(width), h = static_cast<float>(height);
+    chart_->SetSize(vtkRectf(0.5F * font, 0.3F * font, w - 2.0F * font, h - 2.6F * font));
+    words_.clear();
+    words_.text(0.7 * font, h - 1.0 * font, "force (N) over time (s)", {font_px_, palette::ink});
 }
 
 void ForceChart::show(const std::deque<Touch>& samples, double from_s, double to_s, double full_scale_n)
@@ -173,10 +194,13 @@ void ForceChart::show(const std::deque<Touch>& samples, double from_s, double to
         }
     }
     table_->Modified();
-    high = round_up(1.05 * high);
-    low = low < 0 ? -round_up(-1.05 * low) : 0;
-    chart_->GetAxis(vtkAxis::BOTTOM)->SetRange(from_s, std::max(to_s, from_s + 1e-3));
-    chart_->GetAxis(vtkAxis::LEFT)->SetRange(low, high);
+    constexpr double rows = 5, columns = 8; // about so many ticks
+    const double step_n = round_up(1.04 * (high - low) / rows);
+    high = step_n * std::ceil(1.04 * high / step_n);
+    low = step_n * std::floor(1.04 * low / step_n);
+    to_s = std::max(to_s, from_s + 1e-3);
+    set_ticks(chart_->GetAxis(vtkAxis::LEFT), low, high, step_n);
+    set_ticks(chart_->GetAxis(vtkAxis::BOTTOM), from_s, to_s, round_up((to_s - from_s) / columns));
 
     marker_->SetNumberOfRows(marked_s_ ? 2 : 0);
     if (marked_s_) {

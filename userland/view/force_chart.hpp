@@ -13,6 +13,7 @@
 #include <vtkTable.h>
 
 #include "view/colour.hpp"
+#include "view/flat_shapes.hpp"
 #include "view/touch.hpp"
 
 namespace phantom::view {
@@ -24,7 +25,7 @@ class ForceChart {
 
     /// Size of words and width of thin lines, in pixels.
     void set_scale(int font_px, double line_px);
-    /// Size of the renderer's viewport in pixels; the chart fills it.
+    /// Size of the renderer's viewport in pixels; the chart fills it. After set_scale().
     void set_size(int width, int height);
     /// Draws the samples (times ascending) over [from_s, to_s]; full_scale_n: the least height of the axis.
     void show(const std::deque<Touch>& samples, double from_s, double to_s, double full_scale_n);
@@ -35,6 +36,8 @@ class ForceChart {
     void add_line(int column, const Colour& colour, const char* name);
 
     Lines lines_;
+    FlatShapes words_;
+    int font_px_ = 13;
     vtkNew<vtkChartXY> chart_;
     vtkNew<vtkContextActor> actor_;
     vtkNew<vtkTable> table_, marker_;

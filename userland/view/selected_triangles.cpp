@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <vector>
 
-#include <vtkActor.h>
 #include <vtkCellArray.h>
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
@@ -26,7 +25,7 @@ SelectedTriangles::SelectedTriangles(const scene::Scene& scene) : scene_(scene)
     show({});
 }
 
-void SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, double edge_width) const
+vtkActor* SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, double edge_width) const
 {
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(triangles_);
@@ -42,6 +41,7 @@ void SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, double edg
     look->SetEdgeColor(palette::selected_edge[0], palette::selected_edge[1], palette::selected_edge[2]);
     look->SetLineWidth(static_cast<float>(edge_width));
     renderer->AddActor(actor);
+    return actor;
 }
 
 void SelectedTriangles::show(std::span<const fdh::Hit> hits)

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include <vtkActor.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
@@ -18,8 +19,8 @@ class SelectedTriangles {
   public:
     explicit SelectedTriangles(const scene::Scene& scene);
 
-    /// Adds them to a renderer; edge_width in pixels.
-    void add_to(vtkRenderer* renderer, double opacity, double edge_width) const;
+    /// Adds them to a renderer; edge_width in pixels. Returns what the renderer draws, and owns.
+    vtkActor* add_to(vtkRenderer* renderer, double opacity, double edge_width) const;
     /// Replaces the selection.
     void show(std::span<const fdh::Hit> hits);
 

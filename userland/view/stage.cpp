@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <vtkCamera.h>
 #include <vtkLightKit.h>
+#include <vtkProperty.h>
 
 #include "view/colour.hpp"
 #include "view/picture_file.hpp"
@@ -87,7 +88,7 @@ Stage::Stage(const scene::Scene& scene, int width, int height, bool offscreen)
 
     surfaces_.add_to(whole_, 1);
     surfaces_.add_to(spot_, spot_opacity);
-    selected_.add_to(whole_, 1, 1.0 * oversampling_);
+    selected_in_whole_ = selected_.add_to(whole_, 1, 1.0 * oversampling_);
     selected_.add_to(spot_, 0.55, 1.3 * oversampling_);
     whole_probe_.set_label_visible(true);
     arrange();
@@ -139,8 +140,8 @@ void Stage::arrange()
     place(whole_, whole_box_);
     place(spot_, spot_box_);
     place(graph_, graph);
-    chart_.set_size(static_cast<int>(graph.width), static_cast<int>(graph.height));
     chart_.set_scale(font(0.87), px(1));
+    chart_.set_size(static_cast<int>(graph.width), static_cast<int>(graph.height));
     whole_probe_.set_scale(font(1.05), px(2));
     spot_probe_.set_scale(font(1.2), px(2));
 }
@@ -195,6 +196,10 @@ void Stage::show(const Touch& touch, std::span<const fdh::Hit> selected, const V
     touch_ = touch;
     radius_mm_ = radius_mm;
     selected_.show(selected);
+    // Of a patch that is small in the whole picture the edges would leave nothing to see.
+    constexpr double large_patch = 0.06;
+    selected_in_whole_->GetProperty()->SetEdgeVisibility(selected_.reach_mm(touch.proxy_mm) >
+                                                         large_patch * extent_mm_);
     aim_spot(touch, normal, radius_mm, blend);
     size_probes(touch, radius_mm);
 }

@@ -92,6 +92,7 @@ class Stage {
     vtkNew<vtkRenderWindow> window_;
     vtkNew<vtkRenderer> base_, whole_, spot_, graph_;
     SelectedTriangles selected_;
+    vtkActor* selected_in_whole_ = nullptr; ///< owned by whole_
     ProbeActors whole_probe_, spot_probe_;
     ForceChart chart_;
     FlatShapes base_shapes_, whole_shapes_, spot_shapes_;
