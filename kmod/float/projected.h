@@ -42,10 +42,23 @@
 #define MONOTONE_RATIO ((real)4)
 
 /* Half the width of a soft wall, in units of rounding_mm(). */
-#define SOFT_WALL ((real)4)
+#define SOFT_WALL ((real)8)
 
-/* Roots of one sheet at a vertex differ in height by less than that, in units of rounding_mm(). */
-#define SAME_SHEET ((real)256)
+/*
+ * Part of the distance within the offset triangle that is added to the distance from the wall: at
+ * a fold A.N = 0, and without it a root would lie on every wall there, however far from it in b.
+ */
+#define IN_PLANE ((real)1 / 32)
+
+/* How far, in units of R, P may lie from the point that the root stands for. */
+#define FOUND_AGAIN ((real)0.05)
+
+/*
+ * Two patches that meet where the tip is find the same root there: in height but for that many
+ * rounding_mm(), in normal but for that many radians.
+ */
+#define SAME_SHEET_HEIGHT ((real)512)
+#define SAME_SHEET_TURN ((real)0.01)
 
 /* Bisection alone needs that many steps for float32's 24 bits; float64 ends as near as Newton gets. */
 #define BRACKET_STEPS 32
@@ -254,7 +267,7 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 					h));
 	lanes size = block->area[step] * lanes3_dot(area, area);
 	lanes inverse, b0, b1, b2, turned, reach, length, radius = block->radius[step];
-	struct lanes3 n;
+	struct lanes3 n, away;
 	mask_lanes near_wall;
 
 	valid &= size > 0;
@@ -266,10 +279,7 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 	turned = lanes_abs(lanes3_dot(area, n)) * block->area[step];
 	/* |N x E_i| is at most the length of an offset edge */
 	reach = (2 * soft) * (block->extent[step] + h + soft);
-	b0 *= turned;
-	b1 *= turned;
-	b2 *= turned;
-	valid &= (b0 >= -reach) & (b1 >= -reach) & (b2 >= -reach);
+	valid &= (b0 * turned >= -reach) & (b1 * turned >= -reach) & (b2 * turned >= -reach);
 	length = lanes_sqrt(lanes3_dot(n, n));
 	valid &= (length > 0) & (h * length < radius) & (h * length > -rounding);
 	out->accepted = valid;
@@ -280,12 +290,17 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 	out->magnitude = block->stiffness[step] * (radius - out->height);
 	out->weight = one;
 	out->soft_walls = lanes_all(0);
-	near_wall = valid & ((b0 <= reach) | (b1 <= reach) | (b2 <= reach));
+	near_wall =
+		valid & ((b0 * turned <= reach) | (b1 * turned <= reach) | (b2 * turned <= reach));
 	if (!mask_bits(near_wall))
 		return;
-	out->weight = soft_wall(b2, n, e1, soft, &out->soft_walls) *
-		      soft_wall(b1, n, e2, soft, &out->soft_walls) *
-		      soft_wall(b0, n, lanes3_add(e1, e2), soft, &out->soft_walls);
+	/* A(h) = 0 solves the cubic as well, with b that mean nothing: P must be found again */
+	away = lanes3_add(w, lanes3_sub(lanes3_scale(e2, b2), lanes3_scale(e1, b1)));
+	valid &= lanes3_dot(away, away) <= FOUND_AGAIN * FOUND_AGAIN * radius * radius;
+	turned += lanes_sqrt(lanes3_dot(area, area)) * block->area[step] * IN_PLANE;
+	out->weight = soft_wall(b2 * turned, n, e1, soft, &out->soft_walls) *
+		      soft_wall(b1 * turned, n, e2, soft, &out->soft_walls) *
+		      soft_wall(b0 * turned, n, lanes3_add(e1, e2), soft, &out->soft_walls);
 	out->accepted = valid & (out->weight > 0);
 }
 
@@ -342,28 +357,42 @@ static inline bool shares_vertex(const struct phantom_float_set *set, u32 a, u32
 	return false;
 }
 
-/* Divides the weights where more than two patches meet, so that one sheet weighs 1. */
+/* Are these the same root, found by two patches that meet where the tip is? */
+static inline bool same_sheet(const struct phantom_float_set *set, const struct projected_root *a,
+			      const struct projected_root *b, real height)
+{
+	struct real3 turn = real3_sub(a->normal, b->normal);
+
+	return (a->soft_walls || b->soft_walls) && a->sign == b->sign &&
+	       real_abs(a->height - b->height) <= height &&
+	       real3_dot(turn, turn) <= SAME_SHEET_TURN * SAME_SHEET_TURN &&
+	       shares_vertex(set, a->patch, b->patch);
+}
+
+/* Divides the weights where patches meet, so that one sheet weighs 1. */
 static inline void divide_weights(const struct phantom_float_set *set, struct projected_root *roots,
 				  u32 count)
 {
-	real weight[SHEET_ROOTS_MAX], same = SAME_SHEET * rounding_mm(set);
+	real weight[SHEET_ROOTS_MAX], height = SAME_SHEET_HEIGHT * rounding_mm(set);
 	u32 i, j;
 
 	if (count > SHEET_ROOTS_MAX)
 		count = SHEET_ROOTS_MAX;
 	for (i = 0; i < count; i++) {
-		real sum = 0;
-		bool vertex = false;
+		real sum = 0, whole;
 
-		for (j = 0; j < count; j++) {
-			if (roots[i].sign != roots[j].sign ||
-			    real_abs(roots[i].height - roots[j].height) > same ||
-			    !shares_vertex(set, roots[i].patch, roots[j].patch))
-				continue;
-			sum += roots[j].weight;
-			vertex |= roots[j].soft_walls > 1;
-		}
-		weight[i] = roots[i].weight / (vertex ? sum : real_max(sum, 1));
+		weight[i] = roots[i].weight;
+		for (j = 0; j < count; j++)
+			if (j != i && same_sheet(set, &roots[i], &roots[j], height))
+				sum += roots[j].weight;
+		/*
+		 * A root that no neighbour shares ends at its wall, or meets a folded one there:
+		 * it keeps its weight. In between the divisor goes over without a step.
+		 */
+		whole = sum + roots[i].weight;
+		if (whole < 1)
+			whole += (1 - whole) * real_max(0, 1 - 16 * sum);
+		weight[i] /= whole;
 	}
 	for (i = 0; i < count; i++)
 		roots[i].weight = weight[i];
