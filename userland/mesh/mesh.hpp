@@ -17,7 +17,8 @@ inline constexpr std::uint32_t no_neighbour = 0xffffffffU;
 struct Soup {
     std::vector<Vec3> vertices;       ///< file units
     std::vector<Triple> faces;        ///< counter-clockwise, indices into vertices
-    std::vector<Vec3> normals;        ///< unit normals the file gave; empty when it gave none
+    std::vector<Vec3> normals;        ///< unit normals the file gave; zero where they had no direction;
+                                      ///< empty when it gave none
     std::vector<Triple> face_normals; ///< per face corner, indices into normals; empty with normals
 };
 
@@ -25,7 +26,7 @@ struct Soup {
 struct Mesh {
     std::vector<Vec3> vertices;       ///< mm
     std::vector<Triple> faces;        ///< counter-clockwise seen from outside
-    std::vector<Vec3> normals;        ///< unit
+    std::vector<Vec3> normals;        ///< unit; with `--prepare none` zero where there is no direction
     std::vector<Triple> face_normals; ///< per face corner, indices into normals
     std::vector<Triple> neighbours;   ///< face over edge i (corner i to i+1), or no_neighbour
 };

@@ -200,6 +200,11 @@ std::uint64_t turn_outward(Soup& soup, const EdgeIndex& edges, const Components&
 
 } // namespace
 
+std::uint64_t count_components(const Soup& soup, const EdgeIndex& edges)
+{
+    return components_of(soup, edges).size.size();
+}
+
 void orient(Soup& soup, Report& report)
 {
     // Turning faces can make two of them equal, and dropping one can give an edge its two faces: until
@@ -218,7 +223,6 @@ void orient(Soup& soup, Report& report)
             edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
         const std::uint64_t turned = turn_outward(soup, *edges, components);
         report.faces_flipped += flipped;
-        report.components = components.size.size();
         report.components_turned += turned;
         if (flipped == 0 && turned == 0)
             return;

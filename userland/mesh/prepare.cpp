@@ -15,20 +15,20 @@ namespace {
 
 Status check_options(const PrepareOptions& options)
 {
-    const auto bad = [](const char* what, double value, const char* expected) {
-        return Error{"", fmt::format("{} is {}, expected {}", what, value, expected)};
+    const auto bad = [](const char* option, double value, const char* expected) {
+        return Error{option, fmt::format("{:g} is out of range, expected {}", value, expected)};
     };
     // Negated comparisons: NaN is refused as well.
     if (!(options.scale > 0) || !std::isfinite(options.scale))
         return bad("scale", options.scale, "a number above 0");
     if (!(options.fit_mm >= 0) || !std::isfinite(options.fit_mm))
-        return bad("fit", options.fit_mm, "a size in mm above 0, or 0 for none");
+        return bad("--fit", options.fit_mm, "a size in mm above 0, or 0 for none");
     if (!(options.weld_mm >= 0) || !std::isfinite(options.weld_mm))
         return bad("weld", options.weld_mm, "a distance in mm of 0 or more");
     if (!(options.split_mm >= 0) || !std::isfinite(options.split_mm))
-        return bad("split", options.split_mm, "a length in mm above 0, or 0 for none");
+        return bad("--split", options.split_mm, "a length in mm above 0, or 0 for none");
     if (!(options.crease_deg >= 0 && options.crease_deg <= 180))
-        return bad("crease", options.crease_deg, "an angle of 0 ... 180 degrees");
+        return bad("--crease", options.crease_deg, "an angle of 0 ... 180 degrees");
     return success();
 }
 
@@ -126,6 +126,7 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     Mesh mesh;
     const EdgeIndex edges(soup.faces, soup.vertices.size());
     mesh.neighbours = neighbours_of(soup, edges, report);
+    report.components = count_components(soup, edges);
     progress(0.8);
     if (options.full)
         corner_normals(soup, mesh.neighbours, options.crease_deg, report);

@@ -44,7 +44,7 @@ struct Report {
     double edge_min_mm = 0, edge_median_mm = 0, edge_max_mm = 0;
     bool watertight = false; ///< every edge has exactly two faces, of opposite sense
     double size_mm[3] = {0, 0, 0};
-    std::vector<std::string> warnings; ///< each names the option that helps
+    std::vector<std::string> warnings; ///< one line each; names the option that helps, where there is one
 };
 
 struct Prepared {
@@ -52,7 +52,9 @@ struct Prepared {
     Report report;
 };
 
-/// `name` stands in errors. Fails when no usable face is left.
+/// `name` stands in errors. Fails when no usable face is left, or when an option is out of range or would
+/// give more than 20 million faces. Preparing what it gave once more, with the same options, changes nothing;
+/// but for a fit together with a weld distance, which may move the outline by that distance.
 Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::string& name);
 
 /// Writes binary little-endian PLY with doubles and vertex normals (corners with different

@@ -136,10 +136,14 @@ bool cgal_read_off(std::istream& stream, PolygonSoup& out)
     Points points;
     Polygons polygons;
     std::vector<Kernel::Vector_3> normals;
-    if (!CGAL::IO::read_OFF(
-            stream, points, polygons,
-            CGAL::parameters::verbose(false).vertex_normal_output_iterator(std::back_inserter(normals))))
-        return false;
+    try {
+        if (!CGAL::IO::read_OFF(
+                stream, points, polygons,
+                CGAL::parameters::verbose(false).vertex_normal_output_iterator(std::back_inserter(normals))))
+            return false;
+    } catch (const std::length_error&) {
+        return false; // Polygon::resize: the stream stands behind the line of that face
+    }
     take(points, polygons, out);
     take_normals(normals, out);
     return true;

@@ -45,13 +45,10 @@ void warn_defects(Report& report)
         if (count > 0)
             report.warnings.push_back(fmt::format("{} {}", count, what));
     };
-    warn(report.boundary_edges,
-         "boundary edges: the mesh is open, a tip can get behind it (--weld MM closes seams of that width)");
-    warn(report.nonmanifold_edges, "non-manifold edges (more than two faces): no proxy slides across them "
-                                   "(--weld 0 if welding made them)");
+    warn(report.boundary_edges, "boundary edges: the mesh is open, a tip can get behind it");
+    warn(report.nonmanifold_edges, "non-manifold edges (more than two faces): no proxy slides across them");
     warn(report.unorientable_edges,
-         "edges whose two faces disagree on the outside: no proxy slides across them "
-         "(--prepare none keeps the file's own sense)");
+         "edges whose two faces disagree on the outside: no proxy slides across them");
     warn(report.faces_zero_area, "faces without area dropped (--prepare none keeps them)");
     warn(report.faces_duplicate, "duplicate faces dropped (--prepare none keeps them)");
     warn(report.faces_nonfinite, "faces with a corner that is no finite point dropped");

@@ -31,6 +31,9 @@ Status split_long_edges(Soup& soup, double split_mm, const std::string& name, Re
 /// Faces over each edge; none across an edge of more than two faces or of two that disagree. Counts edges.
 std::vector<Triple> neighbours_of(const Soup& soup, const EdgeIndex& edges, Report& report);
 
+/// Parts that hang together over edges of exactly two faces.
+std::uint64_t count_components(const Soup& soup, const EdgeIndex& edges);
+
 /// Angle-weighted normals per corner, faces round a vertex grouped up to creases; a normal of the
 /// file stays where it fits its face.
 void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double crease_deg, Report& report);

@@ -219,7 +219,7 @@ TEST(MeshReadBad, HeadersThatPromiseBillionsAreRefusedBeforeMemoryIsTaken)
                      std::string(12, '\0'),
                  ": ", "in face 0 of 1");
     expect_error("a.off", "OFF\n4000000000 1 0\n0 0 0\n", ":2: ", "more than 25 bytes can hold");
-    expect_error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n", ": ", "corners");
+    expect_error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n", ":6: ", "or a face");
     std::string stl = stl_binary_of(cube());
     stl.replace(80, 4, raw(4000000000U));
     expect_error("a.stl", stl, ": ", "promises 4000000000 facets");
