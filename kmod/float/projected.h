@@ -50,8 +50,11 @@
  */
 #define IN_PLANE ((real)1 / 32)
 
-/* How far, in units of R, P may lie from the point that the root stands for. */
-#define FOUND_AGAIN ((real)0.05)
+/*
+ * A(h) = 0 solves the cubic as well, with b that mean nothing. It happens only where the interval is
+ * split; there P must be found again from its b and h, up to that part of R.
+ */
+#define FOUND_AGAIN ((real)1e-3)
 
 /*
  * Two patches that meet where the tip is find the same root there: in height but for that many
@@ -78,6 +81,7 @@ struct real_cubic {
 struct step_roots {
 	lanes h[PROJECTED_ROOTS], sign[PROJECTED_ROOTS];
 	mask_lanes valid[PROJECTED_ROOTS];
+	mask_lanes split; /* lanes whose interval was split */
 };
 
 /* Where a root lies in its shell. */
@@ -204,9 +208,11 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 	mask_lanes falling = (most < zero) & (least >= MONOTONE_RATIO * most);
 	mask_lanes rising = (least > zero) & (most <= MONOTONE_RATIO * least);
 	mask_lanes usual = candidates & (falling | rising);
-	u32 split = mask_bits(candidates & ~usual), l, i, rounds = 1;
+	u32 split, l, i, rounds = 1;
 	lanes h;
 
+	roots->split = candidates & ~usual;
+	split = mask_bits(roots->split);
 	h = lanes_min(lanes_max(-c->c0 / lanes_select(usual, c->c1, lanes_all(1)), low), high);
 	for (i = 0; i < newton_steps; i++) {
 		lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(1));
@@ -248,7 +254,8 @@ LANES_INLINE lanes soft_wall(lanes area, struct lanes3 normal, struct lanes3 edg
 
 /* Is the root in the shell, and what does it give? */
 LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct lanes3 q, lanes h,
-				   mask_lanes valid, real rounding, struct shell_point *out)
+				   mask_lanes valid, mask_lanes split, real rounding,
+				   struct shell_point *out)
 {
 	const lanes one = lanes_all(1);
 	const real soft = SOFT_WALL * rounding;
@@ -267,7 +274,7 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 					h));
 	lanes size = block->area[step] * lanes3_dot(area, area);
 	lanes inverse, b0, b1, b2, turned, reach, length, radius = block->radius[step];
-	struct lanes3 n, away;
+	struct lanes3 n;
 	mask_lanes near_wall;
 
 	valid &= size > 0;
@@ -280,6 +287,13 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 	/* |N x E_i| is at most the length of an offset edge */
 	reach = (2 * soft) * (block->extent[step] + h + soft);
 	valid &= (b0 * turned >= -reach) & (b1 * turned >= -reach) & (b2 * turned >= -reach);
+	if (mask_bits(split)) {
+		struct lanes3 away =
+			lanes3_add(w, lanes3_sub(lanes3_scale(e2, b2), lanes3_scale(e1, b1)));
+
+		valid &= ~split |
+			 (lanes3_dot(away, away) <= FOUND_AGAIN * FOUND_AGAIN * radius * radius);
+	}
 	length = lanes_sqrt(lanes3_dot(n, n));
 	valid &= (length > 0) & (h * length < radius) & (h * length > -rounding);
 	out->accepted = valid;
@@ -294,13 +308,13 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 		valid & ((b0 * turned <= reach) | (b1 * turned <= reach) | (b2 * turned <= reach));
 	if (!mask_bits(near_wall))
 		return;
-	/* A(h) = 0 solves the cubic as well, with b that mean nothing: P must be found again */
-	away = lanes3_add(w, lanes3_sub(lanes3_scale(e2, b2), lanes3_scale(e1, b1)));
-	valid &= lanes3_dot(away, away) <= FOUND_AGAIN * FOUND_AGAIN * radius * radius;
 	turned += lanes_sqrt(lanes3_dot(area, area)) * block->area[step] * IN_PLANE;
 	out->weight = soft_wall(b2 * turned, n, e1, soft, &out->soft_walls) *
 		      soft_wall(b1 * turned, n, e2, soft, &out->soft_walls) *
 		      soft_wall(b0 * turned, n, lanes3_add(e1, e2), soft, &out->soft_walls);
+	/* a lane's result must not depend on who shares its step */
+	out->weight = lanes_select(near_wall, out->weight, one);
+	out->soft_walls = lanes_keep(near_wall, out->soft_walls);
 	out->accepted = valid & (out->weight > 0);
 }
 
@@ -323,7 +337,8 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	c = shell_cubic(block, step, q, height);
 	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
 	for (i = 0; i < rounds; i++) {
-		shell_evaluate(block, step, q, roots.h[i], roots.valid[i], rounding, &point[i]);
+		shell_evaluate(block, step, q, roots.h[i], roots.valid[i], roots.split, rounding,
+			       &point[i]);
 		any |= mask_bits(point[i].accepted);
 	}
 	for (l = 0; any >> l; l++) {

@@ -169,7 +169,7 @@ TEST(Projected, ValidLessFoldedIsOneRoundAConcaveMesh)
     std::mt19937 random(31);
     std::uniform_real_distribution<double> side(-3, 3), height(6.5, 15);
     unsigned folds = 0, all_in_range = 0;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 80; ++i) {
         const Vec3 p = on_grid({side(random), side(random), height(random)});
         const auto expected = reference.shell(p);
         if (expected.margin < 2e-4 || dented(unit(p)) + 0.2 > length(p))

@@ -293,6 +293,10 @@ void add_root(const Triangle& t, V tip, Real h, ShellSum& shell, Result& result)
         const Real distance = b[static_cast<std::size_t>(i)] * root(size2) / length(edge);
         least = std::min(least, distance);
     }
+    // A(h) = 0 solves the cubic as well; P is not in that triangle
+    const V found = b[0] * offset[0] + b[1] * offset[1] + b[2] * offset[2];
+    if (length(found - tip) > 1e-6)
+        return;
     const Real height = h * length(n), radius = t.radius;
     if (height < 2 * radius)
         tighten(result, least);
