@@ -60,7 +60,7 @@ void phantom_chardev_release(struct phantom_file *file)
 	kfree(file);
 }
 
-/* ---- ioctl ----------------------------------------------------------------------------------------- */
+/* ---- ioctl --------------------------------------------------------------- */
 
 static long phantom_chardev_get_info(struct phantom_file *file, void __user *argument)
 {
@@ -204,7 +204,7 @@ long phantom_chardev_ioctl(struct phantom_file *file, unsigned int command, void
 	return -ENOTTY;
 }
 
-/* ---- read, poll, mmap -------------------------------------------------------------------------------- */
+/* ---- read, poll, mmap ---------------------------------------------------- */
 
 static bool phantom_chardev_has_records(const struct phantom_file *file)
 {
@@ -216,7 +216,7 @@ static bool phantom_chardev_idle(const struct phantom_file *file)
 	return READ_ONCE(file->chardev->servo->state) == PHANTOM_STATE_IDLE;
 }
 
-/* As many whole records as there are and fit. Bytes, or -EFAULT when not even one could be copied. */
+/* As many whole records as there are and fit. Bytes, or -EFAULT when not one could be copied. */
 static ssize_t phantom_chardev_copy_records(struct phantom_file *file, char __user *buffer,
 					    size_t size)
 {

@@ -2,8 +2,8 @@
 /*
  * phantom_chardev.h - the calls on /dev/phantom_rt0: checks, and nothing of what they ask for.
  *
- * phantom_node.c hangs these functions into a struct file_operations, the user-mode build into a C API.
- * Process context; errors as phantom_abi.h says.
+ * phantom_node.c hangs these functions into a struct file_operations, the user-mode build into a
+ * C API. Process context; errors as phantom_abi.h says.
  *
  * LOCKS, in this order: file->reading, chardev->control. The servo thread takes neither.
  */
@@ -15,7 +15,7 @@
 
 struct phantom_chardev {
 	struct phantom_servo *servo; /* fixed */
-	/* Serialises what changes the servo; guards feeder and servo->sets on the submitter's side. */
+	/* Serialises what changes the servo; guards feeder and the submitter's side of the sets. */
 	struct mutex control;
 	struct phantom_file *feeder;
 };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * phantom_clock.c - the kernel's clock: a SCHED_FIFO thread on one CPU that sleeps to absolute deadlines.
+ * phantom_clock.c - the kernel's clock: a SCHED_FIFO thread on one CPU that sleeps to absolute
+ * deadlines.
  *
- * For a thread of a real-time policy schedule_hrtimeout_range() uses a hard timer on PREEMPT_RT, too: the wake-up
- * comes from the interrupt itself and waits for no softirq.
+ * For a thread of a real-time policy schedule_hrtimeout_range() uses a hard timer on PREEMPT_RT,
+ * too: the wake-up comes from the interrupt itself and waits for no softirq.
  */
 #include <phantom_platform.h>
 #include "phantom_kernel.h"

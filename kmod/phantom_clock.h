@@ -2,9 +2,9 @@
 /*
  * phantom_clock.h - time and thread of a servo, injected.
  *
- * The kernel's clock (phantom_clock.c) is a SCHED_FIFO thread pinned to a CPU that sleeps to absolute
- * deadlines. User mode has the same with pthreads, and a virtual one without a thread: whoever
- * steps it is the servo thread for that long.
+ * The kernel's clock (phantom_clock.c) is a SCHED_FIFO thread pinned to a CPU that sleeps to
+ * absolute deadlines. User mode has the same with pthreads, and a virtual one without a thread:
+ * whoever steps it is the servo thread for that long.
  */
 #ifndef PHANTOM_CLOCK_H
 #define PHANTOM_CLOCK_H

@@ -2,8 +2,9 @@
 /*
  * phantom_control.c - what the ioctls do to the servo: start, stop, rate, model, sets, faults.
  *
- * All of it runs in process context under the character device's control mutex. While the servo runs it is
- * reached only by words and requests (phantom_servo.h); while it does not, its state is ours.
+ * All of it runs in process context under the character device's control mutex. While the servo
+ * runs it is reached only by words and requests (phantom_servo.h); while it does not, its state
+ * is ours.
  */
 #include <phantom_platform.h>
 #include "phantom_servo.h"

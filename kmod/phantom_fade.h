@@ -4,7 +4,8 @@
  *
  *     F(t) = from + (target(t) - from) (t - begin) / PHANTOM_FADE_NS,   then target(t)
  *
- * A fade begun while another runs starts from where that one is: the output never steps. Servo only.
+ * A fade begun while another runs starts from where that one is: the output never steps. Servo
+ * only.
  */
 #ifndef PHANTOM_FADE_H
 #define PHANTOM_FADE_H

@@ -13,7 +13,7 @@
  *
  * Velocity is the low-passed difference of positions (time constant PHANTOM_VELOCITY_TAU_NS):
  *
- *     v += ((P - P_last) / dt - v) dt / (tau + dt),   dt = max(time between the two ticks, one period)
+ *     v += ((P - P_last) / dt - v) dt / (tau + dt),   dt = max(time between ticks, period)
  *
  * so encoder steps and a tick that comes right behind a late one do not look like speed. A jump of
  * max_speed (tau + dt) or more in one tick is an overspeed: 15 mm with the defaults at 1 kHz.
@@ -62,7 +62,7 @@ int phantom_safety_limits(struct phantom_limits *limits, const struct phantom_st
 /* A run begins: zero force, ramp at its foot. Latched faults stay. */
 void phantom_safety_begin(struct phantom_safety *safety, const struct phantom_limits *limits);
 
-/* ---- once a tick, in this order ------------------------------------------------------------------ */
+/* ---- once a tick, in this order ------------------------------------------ */
 /* elapsed_ns: since the last tick; latency_ns: wake-up after the period's begin. */
 void phantom_safety_watch(struct phantom_safety *safety, u64 latency_ns);
 void phantom_safety_track(struct phantom_safety *safety, const s64 tip_nm[3], u64 elapsed_ns,

@@ -14,12 +14,13 @@
  *     device   <- force                       an error is a fault
  *     record, status page, wake-ups
  *
- * LOSS OF COVERAGE. Contact is evaluated only where the promise of the set reaches. While it does not,
- * the state (inside, proxy, tip of the last evaluation) is kept for PHANTOM_MEMORY_NS: when coverage
- * comes back in time, the path from that last tip to the present one is searched for a crossing of the surface, so a
- * tip that went through meanwhile is found inside and not let fall. After that the state is dropped, inside = 0:
- * better no force than a full one at a depth nobody felt coming. A fast tip may start its path
- * outside the new set's coverage; a crossing that the set does know is a crossing all the same.
+ * LOSS OF COVERAGE. Contact is evaluated only where the promise of the set reaches. While it does
+ * not, the state (inside, proxy, tip of the last evaluation) is kept for PHANTOM_MEMORY_NS: when
+ * coverage comes back in time, the path from that last tip to the present one is searched for a
+ * crossing of the surface, so a tip that went through meanwhile is found inside and not let fall.
+ * After that the state is dropped, inside = 0: better no force than a full one at a depth nobody
+ * felt coming. A fast tip may start its path outside the new set's coverage; a crossing that the
+ * set does know is a crossing all the same.
  *
  * FLOAT SECTIONS run with preemption off: no sleeping lock, no allocation, no copy from user, no
  * print between begin and end, and nothing but float/ is called there.
@@ -35,7 +36,7 @@ static u64 phantom_servo_now(const struct phantom_servo *servo)
 	return servo->clock->ops->now_ns(servo->clock);
 }
 
-/* ---- float sections -------------------------------------------------------------------------------- */
+/* ---- float sections ------------------------------------------------------ */
 
 /* Servo thread. */
 static void phantom_servo_float_tick(struct phantom_servo *servo,
@@ -76,7 +77,6 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		slot->ops->prepare(&prepare);
 		kernel_fpu_end();
 		length = min_t(u64, phantom_servo_now(servo) - begin, U32_MAX);
-		WRITE_ONCE(servo->prepare_sections, servo->prepare_sections + 1);
 		if (length > servo->prepare_max_ns)
 			WRITE_ONCE(servo->prepare_max_ns, (u32)length);
 		prepare.first += prepare.count;
@@ -84,7 +84,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 	slot->refused = prepare.refused;
 }
 
-/* ---- contact ------------------------------------------------------------------------------------------ */
+/* ---- contact ------------------------------------------------------------- */
 
 void phantom_servo_forget_touch(struct phantom_servo *servo)
 {
@@ -223,7 +223,7 @@ static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pa
 	       sizeof(pass->proxy_nm));
 }
 
-/* ---- the rest of the tick ------------------------------------------------------------------------------- */
+/* ---- the rest of the tick ------------------------------------------------ */
 
 static u32 phantom_servo_device_fault(int error)
 {

@@ -3,14 +3,14 @@
  * phantom_servo.h - the fast task: one tick per period turns the tip's position into a force.
  *
  * WHO MAY TOUCH WHAT
- *   "control" is any thread that holds the character device's control mutex. The servo thread takes no
- *   lock that control holds, and waits for nobody.
+ *   "control" is any thread that holds the character device's control mutex. The servo thread
+ *   takes no lock that control holds, and waits for nobody.
  *
  *   fixed      set by init, read by all
  *   word       one aligned word, READ_ONCE/WRITE_ONCE; written by the side named, read by any
  *   request    set by control with a release store, taken by the servo with xchg
- *   run        the servo's while it runs, control's while it does not. start() and stop() of the clock
- *              hand it over: they order all memory, as creating and joining a thread does
+ *   run        the servo's while it runs, control's while it does not. start() and stop() of the
+ *              clock hand it over: they order all memory, as creating and joining a thread does
  *   own        has a protocol of its own, in its header
  */
 #ifndef PHANTOM_SERVO_H
@@ -26,7 +26,7 @@
 #include "phantom_set.h"
 #include "phantom_stats.h"
 
-/* What contact remembers from tick to tick, in world coordinates so that no swap of sets moves it. */
+/* What contact remembers from tick to tick, in world coordinates: no swap of sets moves it. */
 struct phantom_touch {
 	bool valid; /* previous_nm was evaluated not longer than PHANTOM_MEMORY_NS ago */
 	bool inside;
@@ -64,7 +64,6 @@ struct phantom_servo {
 	u32 rate_hz;
 	u64 model; /* packed, one byte a field: phantom_model_pack() */
 	u32 prepare_max_ns; /* longest float section of a submission */
-	u64 prepare_sections;
 
 	/* request */
 	u32 stop_wanted;
@@ -109,7 +108,7 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 /* Not running. */
 void phantom_servo_destroy(struct phantom_servo *servo);
 
-/* ---- control mutex held; errors as phantom_abi.h says ----------------------------------------------- */
+/* ---- control mutex held; errors as phantom_abi.h says -------------------- */
 int phantom_servo_start(struct phantom_servo *servo, const struct phantom_start *start);
 /* Sleeps until the force has ramped to zero and nothing of the servo runs. */
 void phantom_servo_stop(struct phantom_servo *servo);
@@ -121,7 +120,7 @@ int phantom_servo_submit(struct phantom_servo *servo, const void __user *user);
 /* The feeder has gone: no set, no contact state. Not running. */
 void phantom_servo_forget(struct phantom_servo *servo);
 
-/* ---- between phantom_control.c and phantom_servo.c ------------------------------------------------------ */
+/* ---- between phantom_control.c and phantom_servo.c ----------------------- */
 static inline u64 phantom_model_pack(const struct phantom_model *model)
 {
 	return (u64)model->model | (u64)model->newton_steps << 8 | (u64)model->combine << 16 |
@@ -139,14 +138,14 @@ static inline void phantom_model_unpack(u64 packed, struct phantom_model *model)
 }
 
 /*
- * Converts sets.copy into the slot, one float section per PHANTOM_FLOAT_PREPARE_MAX patches. Process
- * context, control mutex held.
+ * Converts sets.copy into the slot, one float section per PHANTOM_FLOAT_PREPARE_MAX patches.
+ * Process context, control mutex held.
  */
 void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot);
 /* Run state. */
 void phantom_servo_forget_touch(struct phantom_servo *servo);
 
-/* ---- for clocks only: the servo thread ---------------------------------------------------------------- */
+/* ---- for clocks only: the servo thread ----------------------------------- */
 /* Ticks until stopped. */
 void phantom_servo_run(struct phantom_servo *servo);
 /* One tick and the choice of the next period, at servo->next_ns. False: the run is over. */

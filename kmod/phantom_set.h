@@ -9,10 +9,10 @@
  *                                   |
  *                                   +-- replaced before it was taken --> FREE  (submitter)
  *
- * WAITING is the one pointer `waiting`, exchanged atomically by both sides; a slot becomes FREE by a
- * release store and is picked by an acquire load. In use, waiting and being filled makes three;
- * the fourth lets a submitter work while the servo still holds an outgoing set. Submitters are serialised by
- * the control mutex.
+ * WAITING is the one pointer `waiting`, exchanged atomically by both sides; a slot becomes FREE
+ * by a release store and is picked by an acquire load. In use, waiting and being filled makes
+ * three; the fourth lets a submitter work while the servo still holds an outgoing set. Submitters
+ * are serialised by the control mutex.
  */
 #ifndef PHANTOM_SET_H
 #define PHANTOM_SET_H
@@ -26,7 +26,7 @@
 #define PHANTOM_SLOT_FREE 0U
 #define PHANTOM_SLOT_HELD 1U
 
-/* Coverage farther than this counts as this far: keeps the squares within u64 (3 * 2e9^2 < 2^64). */
+/* Coverage farther than this counts as this far: keeps the squares in u64 (3 * 2e9^2 < 2^64). */
 #define PHANTOM_COVERAGE_MAX_NM 2000000000U
 
 struct phantom_slot {
@@ -72,11 +72,12 @@ void phantom_set_init(struct phantom_sets *sets, u32 patches_max);
 /* No servo, no submitter any more. */
 void phantom_set_destroy(struct phantom_sets *sets);
 
-/* ---- submitter, process context, control mutex held -------------------------------------------- */
+/* ---- submitter, process context, control mutex held ---------------------- */
 
 /*
- * Copies and validates the set, and picks a slot with room for it in the layout of `ops`. The slot is
- * the caller's until handed over; its float data is not yet written. ERR_PTR as phantom_abi.h says.
+ * Copies and validates the set, and picks a slot with room for it in the layout of `ops`. The
+ * slot is the caller's until handed over; its float data is not yet written. ERR_PTR as
+ * phantom_abi.h says.
  */
 struct phantom_slot *phantom_set_fill(struct phantom_sets *sets, const void __user *user,
 				      const struct phantom_float_ops *ops);
@@ -89,7 +90,7 @@ void phantom_set_forget(struct phantom_sets *sets);
 int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 patches_max);
 int phantom_set_check_arrays(const struct phantom_set_copy *copy);
 
-/* ---- servo, wait-free ------------------------------------------------------------------------------ */
+/* ---- servo, wait-free ---------------------------------------------------- */
 
 /* The newest set handed over since the last call, or NULL. */
 struct phantom_slot *phantom_set_take(struct phantom_sets *sets);
@@ -97,10 +98,10 @@ void phantom_set_release(struct phantom_slot *slot);
 
 /* True when both know an object but disagree about its revision. */
 bool phantom_set_revised(const struct phantom_slot *before, const struct phantom_slot *after);
-/* `position` relative to the slot's origin; false when it does not fit, and then it is not covered. */
+/* `position` relative to the slot's origin; false when it does not fit: it is not covered. */
 bool phantom_set_relative(const struct phantom_slot *slot, const s64 position_nm[3],
 			  s32 relative_nm[3]);
-/* True when the ball of that radius round a point relative to the origin is promised to be complete. */
+/* True when the set promises the whole ball of that radius round a point relative to the origin. */
 bool phantom_set_covers(const struct phantom_slot *slot, const s32 point_nm[3], u32 ball_nm);
 
 #endif /* PHANTOM_SET_H */

@@ -76,8 +76,8 @@ void phantom_stats_begin(struct phantom_stats *stats)
 }
 
 /*
- * The first word holds the sequence and the ABI's version; it is stored before the others with an odd
- * sequence and after them with an even one.
+ * The first word holds the sequence and the ABI's version; it is stored before the others with an
+ * odd sequence and after them with an even one.
  */
 void phantom_stats_publish(struct phantom_stats *stats)
 {

@@ -2,13 +2,13 @@
 /*
  * phantom_stats.h - what a tick leaves behind: the status page, histograms, and a ring of records.
  *
- * One writer: the servo while it runs, the holder of the control mutex while it does not. Any number
- * of readers, who neither wait for it nor hold it up:
+ * One writer: the servo while it runs, the holder of the control mutex while it does not. Any
+ * number of readers, who neither wait for it nor hold it up:
  *
  *   page    behind a sequence counter (phantom_abi.h); every word is stored once, whole
  *   ring    `head` counts the records written since the ring was made. The writer stores head only
- *           when a record is complete. A reader copies record i and then looks at head again: the copy
- *           is good when head < i + PHANTOM_RING_RECORDS, else the writer was at that place already.
+ *           when a record is complete. A reader copies record i and then looks at head again: the
+ *           copy is good when head < i + PHANTOM_RING_RECORDS, else the writer was there already.
  */
 #ifndef PHANTOM_STATS_H
 #define PHANTOM_STATS_H
@@ -32,7 +32,7 @@ u32 phantom_stats_page_size(void);
 int phantom_stats_init(struct phantom_stats *stats);
 void phantom_stats_destroy(struct phantom_stats *stats);
 
-/* ---- the writer ----------------------------------------------------------------------------------- */
+/* ---- the writer ---------------------------------------------------------- */
 /* A run begins: counters and histograms to zero; rate, model and the set in use stay. */
 void phantom_stats_begin(struct phantom_stats *stats);
 /* Copies `next` to the page. */
@@ -41,7 +41,7 @@ void phantom_stats_publish(struct phantom_stats *stats);
 void phantom_stats_count(struct phantom_histogram *histogram, u64 duration_ns);
 void phantom_stats_record(struct phantom_stats *stats, const struct phantom_tick *record);
 
-/* ---- readers, any context --------------------------------------------------------------------------- */
+/* ---- readers, any context ------------------------------------------------ */
 /* Records written so far; the cursor of a reader who wants only what comes. */
 u64 phantom_stats_head(const struct phantom_stats *stats);
 /* The record at *cursor, which moves on; from the oldest left when that is lost. False: none. */

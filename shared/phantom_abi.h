@@ -46,13 +46,28 @@
  *   Conversions saturate, never wrap, and are counted (status->saturated).
  *
  * COVERAGE
- *   A set promises: every triangle of the scene within radius_nm of centre_nm is in it.
- *   Outside the surface the tick needs coverage of the ball of the largest contact
- *   radius round the tip; inside it needs tip and proxy covered. Where the promise does not
- *   reach, no force is computed from the part that is there: the last force fades to zero
- *   within PHANTOM_FADE_NS, PHANTOM_TICK_UNCOVERED is set and poll() reports POLLPRI. The
- *   same holds for a set that is older than start.stale_ms: set a new one at least that often.
- *   A swap between two sets that both cover the tip changes the force by rounding only.
+ *   A set promises: every triangle of the scene within radius_nm of centre_nm is in it. Outside
+ *   the surface the tick needs coverage of the ball of the set's largest contact radius round the
+ *   tip; inside it needs tip and proxy covered. Where the promise does not reach, no force is
+ *   computed from the part that is there: the last force fades to zero within PHANTOM_FADE_NS,
+ *   PHANTOM_TICK_UNCOVERED is set and poll() reports POLLPRI. The same holds for a set that is
+ *   older than start.stale_ms (counted from the tick that took it): set a new one at least that
+ *   often. A tip more than 2^31 nm from the origin is not covered, and a radius of more than 2 m
+ *   counts as 2 m. A swap between two sets that both cover the tip changes the force by rounding
+ *   only. The force also fades, from what it is to what it shall be, when coverage comes back,
+ *   the model changes, an object's revision changes, or a set without patches follows one with.
+ *   An uncovered tip keeps its state (inside, proxy) for PHANTOM_MEMORY_NS. Covered again in
+ *   time, it is looked for on the straight path from where it was last covered, and found inside
+ *   when that crossed the surface. After longer it counts as outside: no force until it has left
+ *   the surface by itself.
+ *
+ * POLL
+ *   POLLIN    a record can be read, or the end of a run has not yet been read.
+ *   POLLPRI   a set is wanted, or a fault came. A set is wanted when the tip gets uncovered or the
+ *             set stale (again every PHANTOM_REMIND_NS while that lasts, and after each new
+ *             set that does not help), and once a set when a tip outside has used up half of its
+ *             slack, the radius less the largest contact radius. It stays until this file
+ *             answers: SUBMIT_SET and CLEAR_FAULT of the feeder and read() of anyone do.
  *
  * RULES
  *   Fields are __u32, __s32, __u64 and __s64 only; sizes are multiples of 8, the same for 32
@@ -71,22 +86,32 @@
  *                 EOPNOTSUPP  a known value that info.features does not offer
  *   START         EBUSY    not IDLE
  *                 EIO      a latched fault: CLEAR_FAULT first
- *                 EINVAL   a limit above the device's own, unknown flag, reserved not zero
+ *                 EINVAL   a force above the device's, ramp_ms > PHANTOM_RAMP_MAX_MS, unknown
+ *                          flag, reserved not zero
+ *                 ENODEV   there is no device
  *                 EPERM    PHANTOM_START_LIMITS_OFF on a device that is not simulated
  *   STOP          (none)   IDLE already: nothing to do, returns 0
  *   SUBMIT_SET    EINVAL   counts over the limits, an index out of range, id 0 or not larger
- *                          than the last one, unknown flag or effect, a normal that is not of
- *                          unit length to 2^-10, a pose that is not the identity (v1), reserved
- *                          not zero, radius 0 in a material, coordinates beyond +-1 m of origin
- *                 ENOMEM   no memory (first set after SET_MODEL only; slots are reused)
- *                 EAGAIN   every slot is in use (a fade holds one): try again next tick
+ *                          than the last one since open(), unknown flag, effect or kind, effects
+ *                          that are not the union of the materials', damping without its effect,
+ *                          a normal that is not of unit length to 2^-10, a pose that is not the
+ *                          identity (v1), an object number twice, reserved not zero, radius 0 in
+ *                          a material, vertices or centre beyond +-1 m of the origin, the origin
+ *                          beyond PHANTOM_POSITION_MAX_NM
+ *                 ENOMEM   no memory (the first sets after open or a change of arithmetic only;
+ *                          slots are reused). The set in use stays in use
+ *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
+ *                 EINVAL   beyond PHANTOM_POSITION_MAX_NM, reserved not zero
  *   CLEAR_FAULT   EAGAIN   the cause is still there
- *                 (0 when no fault is latched)
+ *                 (0 when no fault is latched; else the next tick clears, and ramps up)
  *   mmap          EPERM    writable or executable; EINVAL: offset not 0 or too long
  *   read          EINVAL   the buffer is smaller than one record
+ *                 EFAULT   not even one record could be written
  *                 EAGAIN   O_NONBLOCK and no record
- *                 0        the tick is not running (end of recording)
+ *                 0        no record, and the tick is not running (end of recording)
+ *                 Whole records, from open() on, each file at its own pace. A reader that lags by
+ *                 more than some thousand loses the oldest.
  */
 #ifndef PHANTOM_ABI_H
 #define PHANTOM_ABI_H
@@ -99,7 +124,7 @@
 /* The first node. phantom0 belongs to the mainline driver drivers/misc/phantom.c. */
 #define PHANTOM_DEVICE_NODE "/dev/phantom_rt0"
 
-/* ---- limits ------------------------------------------------------------- */
+/* ---- limits -------------------------------------------------------------- */
 #define PHANTOM_PATCHES_MAX 512 /* patches in a set */
 #define PHANTOM_MATERIALS_MAX 16 /* materials in a set */
 #define PHANTOM_OBJECTS_MAX 16 /* objects in a set */
@@ -116,7 +141,7 @@
 /* ---- unit vectors -------------------------------------------------------- */
 #define PHANTOM_Q30_ONE (1 << 30)
 
-/* ---- features (info.features) --------------------------------------------- */
+/* ---- features (info.features) -------------------------------------------- */
 #define PHANTOM_FEATURE_MODEL_PAPER (1ULL << 0)
 #define PHANTOM_FEATURE_MODEL_PROJECTED (1ULL << 1)
 #define PHANTOM_FEATURE_PROXY_PAPER (1ULL << 2)
@@ -127,11 +152,11 @@
 #define PHANTOM_FEATURE_MOVING_OBJECTS (1ULL << 7)
 #define PHANTOM_FEATURE_SIM_MOVE (1ULL << 8)
 
-/* ---- effects (material.effects, set.effects) ------------------------------- */
+/* ---- effects (material.effects, set.effects) ----------------------------- */
 #define PHANTOM_EFFECT_DAMPING (1U << 0) /* normal damping; never pulls */
 #define PHANTOM_EFFECTS_KNOWN PHANTOM_EFFECT_DAMPING
 
-/* ---- model (CONTACT: contact, combination, proxy, arithmetic) --------------- */
+/* ---- model (CONTACT: contact, combination, proxy, arithmetic) ------------ */
 #define PHANTOM_MODEL_OFF 0 /* the tick runs, the force is zero */
 #define PHANTOM_MODEL_PAPER 1 /* Kabelac 2001, Algorithm 1 */
 #define PHANTOM_MODEL_PROJECTED 2 /* signed shell projection; the default */
@@ -147,19 +172,19 @@
 #define PHANTOM_ARITH_FIXED 1
 #define PHANTOM_ARITH_DOUBLE 2
 
-/* ---- devices ----------------------------------------------------------------- */
+/* ---- devices ------------------------------------------------------------- */
 #define PHANTOM_DEVICE_NONE 0
 #define PHANTOM_DEVICE_SIM 1
 #define PHANTOM_DEVICE_HID 2
 #define PHANTOM_DEVICE_PCI 3
 
-/* ---- instruction sets of the float sections (status.isa) --------------------- */
+/* ---- instruction sets of the float sections (status.isa) ----------------- */
 #define PHANTOM_ISA_NONE 0
 #define PHANTOM_ISA_SSE2 1
 #define PHANTOM_ISA_AVX2 2
 #define PHANTOM_ISA_DOUBLE 3 /* user mode only */
 
-/* ---- states and faults --------------------------------------------------------- */
+/* ---- states and faults --------------------------------------------------- */
 #define PHANTOM_STATE_IDLE 0
 #define PHANTOM_STATE_RUNNING 1
 #define PHANTOM_STATE_FAULT 2
@@ -220,7 +245,7 @@ struct phantom_start {
 	__u32 max_force_un; /* clamp of |F|, direction kept [the device's] */
 	__u32 slew_un_per_ms; /* largest change of F [1 N per ms] */
 	__u32 ramp_ms; /* of START, STOP and CLEAR_FAULT [250 ms] */
-	__u32 max_speed_um_s; /* overspeed fault [5 m/s] */
+	__u32 max_speed_um_s; /* overspeed fault, of the filtered velocity [5 m/s] */
 	__u32 stall_us; /* stall fault [20000 us] */
 	__u32 stale_ms; /* a set older than this fades [100 ms] */
 	__u32 reserved;
@@ -289,7 +314,7 @@ struct phantom_sim_move {
 };
 
 /* phantom_tick.flags and phantom_status.flags */
-#define PHANTOM_TICK_INSIDE (1U << 0) /* the tip is below the surface, the proxy holds it */
+#define PHANTOM_TICK_INSIDE (1U << 0) /* the tip is below the surface (as far as known) */
 #define PHANTOM_TICK_UNCOVERED (1U << 1) /* no set covers the tip: no force is computed */
 #define PHANTOM_TICK_STALE (1U << 2) /* the set is older than start.stale_ms */
 #define PHANTOM_TICK_FADING (1U << 3) /* the force fades from one target to another */
@@ -300,7 +325,7 @@ struct phantom_sim_move {
 
 /* One record of read(): one tick. */
 struct phantom_tick {
-	__u64 tick; /* number, from START; a gap = ticks missed or records lost */
+	__u64 tick; /* number of its period, from 1; a gap = periods missed or records lost */
 	__u64 time_ns;
 	__u64 set_id; /* of the set the force came from; 0 = none */
 	__s64 tip_nm[3];
@@ -309,13 +334,14 @@ struct phantom_tick {
 	__u32 contacts;
 	__u32 flags; /* PHANTOM_TICK_... */
 	__u32 faults; /* PHANTOM_FAULT_..., latched */
-	__u32 latency_ns; /* wake-up after the period's begin */
+	__u32 latency_ns; /* wake-up after the begin of the period that was waited for */
 	__u32 duration_ns; /* of the whole tick */
 };
 
 /*
  * A histogram of durations: bucket b < 8 counts b ns; above, 8 buckets an octave:
- *   b = 8 (e - 2) + m   counts   (8 + m) 2^(e-3) ... (9 + m) 2^(e-3) ns,  e = floor(log2 ns) >= 3, m = 0 ... 7
+ *   b = 8 (e - 2) + m   counts   (8 + m) 2^(e-3) ... (9 + m) 2^(e-3) ns,
+ *   e = floor(log2 ns) >= 3, m = 0 ... 7
  * Counters stop at 2^32 - 1.
  */
 #define PHANTOM_HISTOGRAM_BUCKETS 240
@@ -338,8 +364,8 @@ struct phantom_status {
 	__u32 rate_hz;
 	__u32 isa; /* PHANTOM_ISA_... */
 	struct phantom_model model;
-	__u64 tick; /* ticks since START */
-	__u64 missed; /* periods skipped since START */
+	__u64 tick; /* number of the last period since START, missed ones included */
+	__u64 missed; /* periods skipped since START: ticks run = tick - missed */
 	__u64 start_ns; /* when START came */
 	__u64 time_ns; /* of this tick */
 	__u64 busy_ns; /* sum of tick durations since START: idle = 1 - busy / (time - start) */
@@ -358,10 +384,10 @@ struct phantom_status {
 	__u64 saturated; /* conversions that saturated since START */
 	__u64 refused; /* patches that could not be computed, summed over sets */
 	__u64 clamped; /* ticks with the force clamped */
-	__u64 sections; /* float sections opened */
+	__u64 sections; /* float sections opened by ticks */
 	__u32 set_level;
 	__u32 set_level_error_nm;
-	__u32 section_max_ns; /* the longest float section */
+	__u32 section_max_ns; /* the longest float section, those of SUBMIT_SET included */
 	__u32 reserved[9];
 	struct phantom_histogram latency;
 	struct phantom_histogram duration;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * mailbox.h - the latest position, handed from one thread to another without waiting on either side.
+ * mailbox.h - the latest position, handed from one thread to another without waiting on either
+ * side.
  *
  * Three boxes: the writer fills one, the reader looks at one, and the third lies between them.
  * Posting exchanges the writer's with the middle one, reading the reader's with the middle one when

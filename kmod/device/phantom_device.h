@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * phantom_device.h - a haptic device as the servo sees it: a tip position comes out, a force goes in.
+ * phantom_device.h - a haptic device as the servo sees it: a tip position comes out, a force goes
+ * in.
  *
  * Every back end is one file in this folder with one ops table. It knows this header and the
  * platform, nothing else of the module.
@@ -21,8 +22,8 @@ struct phantom_device_ops {
 	/* Amplifier off. Process context, after the last tick. */
 	void (*stop)(struct phantom_device *device);
 	/*
-	 * Newest tip position in nm, device frame = world frame. 0, -ENODEV when the device is gone,
-	 * or another -errno. Servo thread: may not wait for the device.
+	 * Newest tip position in nm, device frame = world frame. 0, -ENODEV when the device is
+	 * gone, or another -errno. Servo thread: may not wait for the device.
 	 */
 	int (*read)(struct phantom_device *device, s64 tip_nm[3]);
 	/* Force in uN. Same errors and context. Zero must always be accepted. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * sim.c - the simulated device: the tip is where PHANTOM_SIM_MOVE put it last, the force goes nowhere.
- * Its numbers are those of a desktop arm, with a cube of 200 mm to work in.
+ * sim.c - the simulated device: the tip is where PHANTOM_SIM_MOVE put it last, the force goes
+ * nowhere. Its numbers are those of a desktop arm, with a cube of 200 mm to work in.
  */
 #include <phantom_platform.h>
 #include "device/mailbox.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * clock_virtual.c - no thread, and no time but what stepping adds: each tick sees the begin of its own period,
- * latencies and durations are 0, and the same calls give the same records.
+ * clock_virtual.c - no thread, and no time but what stepping adds: each tick sees the begin of
+ * its own period, latencies and durations are 0, and the same calls give the same records.
  */
 #include <phantom_platform.h>
 #include "clocks.h"

@@ -6,9 +6,9 @@
  * pthreads and the C library (platform.c). Two checks that a production kernel does not make come
  * with it: sleeping or allocating inside a float section aborts, and so does nesting two.
  *
- * x86-64 only, as the float sections are: the memory barriers lean on its ordering (stores are not
- * reordered with stores, nor loads with loads), so that the thread sanitizer, which knows no fences,
- * sees nothing but atomic accesses.
+ * x86-64 only, as the float sections are: the memory barriers lean on its ordering (stores are
+ * not reordered with stores, nor loads with loads), so that the thread sanitizer, which knows no
+ * fences, sees nothing but atomic accesses.
  */
 #ifndef PHANTOM_PLATFORM_H
 #define PHANTOM_PLATFORM_H
@@ -47,7 +47,7 @@
 /* Never returned here: no call is restarted. */
 #define ERESTARTSYS 512
 
-/* ---- numbers ------------------------------------------------------------------------------ */
+/* ---- numbers ------------------------------------------------------------- */
 #define min(a, b)                                                                                  \
 	({                                                                                         \
 		__typeof__(a) min_a_ = (a);                                                        \
@@ -71,7 +71,7 @@ static inline u32 ilog2(u32 value)
 
 u32 int_sqrt64(u64 value); /* floor */
 
-/* ---- errors carried in pointers ------------------------------------------------------------- */
+/* ---- errors carried in pointers ------------------------------------------ */
 static inline void *ERR_PTR(long error)
 {
 	return (void *)error;
@@ -87,7 +87,7 @@ static inline bool IS_ERR(const void *pointer)
 	return (uintptr_t)pointer >= (uintptr_t)-4095;
 }
 
-/* ---- memory order ---------------------------------------------------------------------------- */
+/* ---- memory order -------------------------------------------------------- */
 #define READ_ONCE(x) __atomic_load_n(&(x), __ATOMIC_RELAXED)
 #define WRITE_ONCE(x, value) __atomic_store_n(&(x), (value), __ATOMIC_RELAXED)
 #define smp_load_acquire(pointer) __atomic_load_n((pointer), __ATOMIC_ACQUIRE)
@@ -97,7 +97,7 @@ static inline bool IS_ERR(const void *pointer)
 #define smp_wmb() __asm__ volatile("" ::: "memory")
 #define smp_mb() __asm__ volatile("lock; addl $0, -4(%%rsp)" ::: "memory", "cc")
 
-/* ---- allocation: may be told to fail (phantom_usermode.h) -------------------------------- */
+/* ---- allocation: may be told to fail (phantom_usermode.h) ---------------- */
 typedef unsigned int gfp_t;
 #define GFP_KERNEL 0U
 
@@ -113,12 +113,12 @@ void phantom_platform_unshare(const void *page, size_t size);
 /* The same memory once more, read-only. NULL without memory. */
 const void *phantom_platform_view(void *page, size_t size);
 
-/* ---- the caller's memory ----------------------------------------------------------------------- */
+/* ---- the caller's memory ------------------------------------------------- */
 /* Bytes not copied. The first 64 KiB of the address space are nobody's; all else is believed. */
 unsigned long copy_from_user(void *to, const void *from, unsigned long size);
 unsigned long copy_to_user(void *to, const void *from, unsigned long size);
 
-/* ---- mutexes with priority inheritance, as on PREEMPT_RT ------------------------------------------ */
+/* ---- mutexes with priority inheritance, as on PREEMPT_RT ----------------- */
 struct mutex {
 	pthread_mutex_t lock;
 	u32 held;
@@ -131,7 +131,7 @@ void mutex_unlock(struct mutex *mutex);
 void phantom_platform_assert_held(const struct mutex *mutex);
 #define lockdep_assert_held(mutex) phantom_platform_assert_held(mutex)
 
-/* ---- wait queues ----------------------------------------------------------------------------------- */
+/* ---- wait queues --------------------------------------------------------- */
 typedef struct {
 	pthread_mutex_t lock;
 	pthread_cond_t changed; /* on CLOCK_MONOTONIC */
@@ -162,7 +162,7 @@ typedef unsigned int __poll_t;
 #define EPOLLPRI POLLPRI
 #define EPOLLRDNORM POLLRDNORM
 
-/* ---- float sections ----------------------------------------------------------------------------------- */
+/* ---- float sections ------------------------------------------------------ */
 void kernel_fpu_begin(void);
 void kernel_fpu_end(void);
 bool phantom_platform_has_avx2(void);

@@ -34,8 +34,7 @@ struct phantom_um_config {
 	int32_t cpu; /* pin the servo to that CPU; -1 = do not */
 	uint32_t max_force_un; /* the simulated device's; 0 = 10 N */
 	uint32_t isa; /* PHANTOM_ISA_..., NONE = the best the CPU has; DOUBLE allows arith=double */
-	uint32_t
-		patches_max; /* 0 = PHANTOM_PATCHES_MAX; larger for reference runs over a whole mesh */
+	uint32_t patches_max; /* 0 = PHANTOM_PATCHES_MAX; larger for a whole mesh */
 };
 
 struct phantom_um; /* a machine */
@@ -70,9 +69,9 @@ struct phantom_um_thread_info {
 void phantom_um_thread(const struct phantom_um *machine, struct phantom_um_thread_info *info);
 
 /*
- * Tests only. The next tick comes that much later (either clock). The device answers every read with
- * that -errno until told 0; -ENODEV is an unplugged one. The nth allocation from now on in the calling thread
- * fails, once; 0 = none.
+ * Tests only. The next tick comes that much later (either clock). The device answers every read
+ * with that -errno until told 0; -ENODEV is an unplugged one. The nth allocation from now on in
+ * the calling thread fails, once; 0 = none.
  */
 void phantom_um_inject_stall(struct phantom_um *machine, uint64_t ns);
 void phantom_um_inject_device_error(struct phantom_um *machine, int error);

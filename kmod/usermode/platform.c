@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * platform.c - the seam's user-mode side: allocation, the caller's memory, mutexes, wait queues and float
- * sections, with the kernel's names.
+ * platform.c - the seam's user-mode side: allocation, the caller's memory, mutexes, wait queues
+ * and float sections, with the kernel's names.
  */
 #define _GNU_SOURCE
 #include <stdio.h>
@@ -18,7 +18,7 @@
 /* Nobody's memory: below the lowest address that Linux maps for anyone (vm.mmap_min_addr). */
 #define PLATFORM_USER_FIRST 65536UL
 
-/* ---- float sections -------------------------------------------------------------------------------- */
+/* ---- float sections ------------------------------------------------------ */
 
 static _Thread_local bool platform_in_section;
 
@@ -46,7 +46,7 @@ bool phantom_platform_has_avx2(void)
 	return __builtin_cpu_supports("avx2");
 }
 
-/* ---- numbers and time --------------------------------------------------------------------------------- */
+/* ---- numbers and time ---------------------------------------------------- */
 
 u32 int_sqrt64(u64 value)
 {
@@ -74,7 +74,7 @@ u64 ktime_get_ns(void)
 	return (u64)now.tv_sec * NSEC_PER_SEC + (u64)now.tv_nsec;
 }
 
-/* ---- allocation --------------------------------------------------------------------------------------- */
+/* ---- allocation ---------------------------------------------------------- */
 
 static _Thread_local u32 platform_fail_in;
 
@@ -119,7 +119,7 @@ void kfree(const void *memory)
 	vfree(memory);
 }
 
-/* ---- the caller's memory -------------------------------------------------------------------------------- */
+/* ---- the caller's memory ------------------------------------------------- */
 
 static bool platform_is_nobodys(const void *memory)
 {
@@ -146,7 +146,7 @@ unsigned long copy_to_user(void *to, const void *from, unsigned long size)
 	return 0;
 }
 
-/* ---- mutexes ----------------------------------------------------------------------------------------------- */
+/* ---- mutexes ------------------------------------------------------------- */
 
 static void platform_lock_init(pthread_mutex_t *lock)
 {
@@ -190,7 +190,7 @@ void phantom_platform_assert_held(const struct mutex *mutex)
 	abort();
 }
 
-/* ---- wait queues ---------------------------------------------------------------------------------------------- */
+/* ---- wait queues --------------------------------------------------------- */
 
 void init_waitqueue_head(wait_queue_head_t *queue)
 {

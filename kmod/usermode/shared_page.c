@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * shared_page.c - memory that the module writes and everyone else can only read, as a mapping of the
- * device node is: the same pages at two addresses, the second one read-only.
+ * shared_page.c - memory that the module writes and everyone else can only read, as a mapping of
+ * the device node is: the same pages at two addresses, the second one read-only.
  */
 #define _GNU_SOURCE
 #include <sys/mman.h>

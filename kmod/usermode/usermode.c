@@ -43,7 +43,7 @@ struct phantom_um_file {
 	u32 users; /* counted atomically */
 };
 
-/* ---- the device ----------------------------------------------------------------------------------------- */
+/* ---- the device ---------------------------------------------------------- */
 
 static struct phantom_um_device *um_device_of(struct phantom_device *device)
 {
@@ -105,7 +105,7 @@ static int um_device_init(struct phantom_um *machine, u32 max_force_un)
 	return 0;
 }
 
-/* ---- the machine ------------------------------------------------------------------------------------------ */
+/* ---- the machine --------------------------------------------------------- */
 
 static int um_choose_isa(u32 isa, const struct phantom_float_ops **ops,
 			 const struct phantom_float_ops **double_ops)
@@ -230,7 +230,7 @@ void phantom_um_inject_device_error(struct phantom_um *machine, int error)
 	WRITE_ONCE(machine->device.error, error);
 }
 
-/* ---- files -------------------------------------------------------------------------------------------------- */
+/* ---- files --------------------------------------------------------------- */
 
 struct phantom_um_file *phantom_um_open(struct phantom_um *machine, int flags, int *error)
 {
