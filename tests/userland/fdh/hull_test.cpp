@@ -2,6 +2,7 @@
 // Hulls contain what they must, here and in other frames.
 #include <cmath>
 
+#include "fdh/build.hpp"
 #include "fdh/pose.hpp"
 #include "oracle.hpp"
 
@@ -68,6 +69,41 @@ TYPED_TEST(HullTest, ContainsEveryVertexAndIsTight)
             EXPECT_LE(hull[k][1], high + looseness);
         }
     }
+}
+
+// In whole steps, without slack: every lane of every node holds its leaf's corners, also where three
+// coordinates add up to more than floats can tell apart.
+TYPED_TEST(HullTest, EveryLaneContainsItsLeaf)
+{
+    constexpr int K = TypeParam::value;
+    constexpr auto directions = hull_directions<K>();
+    std::mt19937_64 random(18);
+    std::uniform_real_distribution<double> unit(0, 1);
+    Mesh mesh = soup(3000, 10, random);
+    for (auto& v : mesh.vertices) // into the corners of a cube
+        for (double& x : v)
+            x = std::copysign(30 + 2 * unit(random), x);
+    const auto data = build_tree<K>(mesh.view(), 1);
+    std::size_t leaves = 0;
+    for (const auto& node : data.nodes)
+        for (int lane = 0; lane < lanes; lane++) {
+            if (!(node.child[lane] & leaf_flag))
+                continue;
+            leaves++;
+            const Leaf& leaf = data.leaves[node.child[lane] & ~leaf_flag];
+            for (int i = 0; i < lanes && leaf.triangle[i] != no_triangle; i++)
+                for (std::uint32_t vertex : mesh.triangles[leaf.triangle[i]]) {
+                    const auto corner = data.grid.round(mesh.vertices[vertex]);
+                    for (int k = 0; k < K / 2; k++) {
+                        const auto& d = directions[k];
+                        const double x =
+                            d[0] * double{corner[0]} + d[1] * double{corner[1]} + d[2] * double{corner[2]};
+                        ASSERT_LE(node.low[k][lane], x);
+                        ASSERT_GE(node.high[k][lane], x);
+                    }
+                }
+        }
+    EXPECT_EQ(leaves, data.leaves.size());
 }
 
 TYPED_TEST(HullTest, OfAnEmptyTreeIsEmpty)
