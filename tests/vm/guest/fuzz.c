@@ -176,5 +176,7 @@ VM_TEST(fuzz, two_hundred_thousand_random_calls, 200)
     CHECK(status.state == PHANTOM_STATE_IDLE, "state %u after the last close", status.state);
     /* It still works. */
     fd = vm_open_feeder();
-    vm_touch(fd, page);
+    vm_plate_submit(fd, 1);
+    vm_start(fd);
+    vm_wait_ticks(page, 100);
 }
