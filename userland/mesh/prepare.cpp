@@ -115,6 +115,7 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
         drop_degenerate(soup, report);
         progress(0.3);
         orient(soup, report);
+        drop_unused_vertices(soup);
         progress(0.6);
         if (options.split_mm > 0) {
             if (const auto status = split_long_edges(soup, options.split_mm, name, report); !status)

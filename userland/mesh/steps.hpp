@@ -11,9 +11,12 @@
 
 namespace phantom::mesh {
 
-/// Vertices no farther apart than weld_mm become the first of them; 0: only equal ones. Vertices that no
-/// face uses go. Representatives are pairwise farther apart than weld_mm, so a second run changes nothing.
+/// Vertices no farther apart than weld_mm become the first of them; 0: only equal ones. Representatives are
+/// pairwise farther apart than weld_mm, so a second run changes nothing.
 void weld(Soup& soup, double weld_mm, Report& report);
+
+/// Removes vertices that no face uses; those kept stay in order.
+void drop_unused_vertices(Soup& soup);
 
 /// Drops faces with a corner that is not finite, and faces without area: two corners equal, or the height
 /// over the longest side below 1e-12 of it (rounding of the coordinates themselves).

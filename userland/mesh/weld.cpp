@@ -97,8 +97,9 @@ std::vector<std::uint32_t> weld_near(const std::vector<Vec3>& vertices, double w
     return to;
 }
 
-/// Removes vertices that no face uses; those kept stay in order.
-void drop_unused(Soup& soup)
+} // namespace
+
+void drop_unused_vertices(Soup& soup)
 {
     std::vector<std::uint32_t> number(soup.vertices.size(), no_neighbour);
     for (const Triple& face : soup.faces) {
@@ -119,8 +120,6 @@ void drop_unused(Soup& soup)
     }
 }
 
-} // namespace
-
 void weld(Soup& soup, double weld_mm, Report& report)
 {
     const std::vector<std::uint32_t> to =
@@ -131,7 +130,6 @@ void weld(Soup& soup, double weld_mm, Report& report)
         for (std::uint32_t& v : face)
             v = to[v];
     }
-    drop_unused(soup);
 }
 
 } // namespace phantom::mesh

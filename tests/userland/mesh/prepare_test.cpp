@@ -109,6 +109,23 @@ TEST(MeshPrepare, Idempotent)
     }
 }
 
+/// Welding can leave a face without area, and its corners without a face.
+TEST(MeshPrepare, VerticesOfFacesDroppedAfterWeldingAreDroppedToo)
+{
+    Soup soup = cube(50);
+    soup.vertices.insert(soup.vertices.begin(), {{200, 0, 0}, {200.1, 0, 0}, {200, 0.1, 0}});
+    for (Triple& face : soup.faces) {
+        for (std::uint32_t& v : face)
+            v += 3;
+    }
+    soup.faces.push_back({0, 1, 2});
+    const Prepared out = prepared(soup, {.weld_mm = 0.5});
+    expect_sound(out);
+    EXPECT_EQ(out.report.faces_zero_area, 1U);
+    EXPECT_EQ(out.report.vertices, 8U);
+    EXPECT_NEAR(out.report.size_mm[0], 100, 1e-12);
+}
+
 TEST(MeshPrepare, UnweldedSolidBecomesWatertight)
 {
     const Prepared out = prepared(unwelded(globe(50, 16, 9)));
