@@ -19,7 +19,7 @@ Status ServoSwitch::toggle()
     }
     if (Status set = device.set_model(model_); !set)
         return set;
-    Status started = device.start(feeder::choose_start({}, session_.scene().device));
+    Status started = device.start(feeder::choose_start(start_, session_.scene().device));
     off_ = !started.ok();
     return started;
 }

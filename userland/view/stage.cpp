@@ -71,7 +71,7 @@ Stage::Stage(const scene::Scene& scene, int width, int height, bool offscreen)
     window_->SetWindowName("fdhview");
     window_->SetOffScreenRendering(offscreen);
     window_->SetSize(oversampling_ * width, oversampling_ * height);
-    window_->SetMultiSamples(offscreen ? 0 : 8);
+    window_->SetMultiSamples(0);
 
     for (vtkRenderer* renderer : {base_.Get(), whole_.Get(), spot_.Get(), graph_.Get()}) {
         set_background(renderer, palette::panel, palette::panel);
@@ -318,6 +318,13 @@ void Stage::render()
     draw_spot_overlay();
     draw_column();
     window_->Render();
+    if (oversampling_ == 1 && !driver_known_) {
+        driver_known_ = true;
+        // Drawn in software, eight samples make a frame take six times as long.
+        const std::string driver = window_->ReportCapabilities();
+        if (driver.find("llvmpipe") == std::string::npos && driver.find("softpipe") == std::string::npos)
+            window_->SetMultiSamples(8);
+    }
 }
 
 Status Stage::save_png(const std::filesystem::path& file)

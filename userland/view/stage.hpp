@@ -109,6 +109,7 @@ class Stage {
     Touch touch_;
     double extent_mm_ = 1, full_scale_n_ = 1, radius_mm_ = 1;
     std::optional<double> colour_bar_n_;
+    bool driver_known_ = false; ///< whether it was looked at for multisampling
 };
 
 } // namespace phantom::view
