@@ -46,9 +46,9 @@ void place_sphere(vtkActor* actor, const Vec3& at, double radius)
 
 } // namespace
 
-ProbeActors::ProbeActors(vtkRenderer* renderer)
+ProbeActors::ProbeActors(vtkRenderer* renderer, double ball_opacity)
 {
-    make_sphere(ball_, palette::tip, 0.28);
+    make_sphere(ball_, palette::tip, ball_opacity);
     make_sphere(tip_, palette::tip, 1);
     make_sphere(proxy_, palette::proxy, 1);
     ball_->GetProperty()->SetBackfaceCulling(true);

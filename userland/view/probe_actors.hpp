@@ -23,7 +23,8 @@ struct ProbeSizes {
 
 class ProbeActors {
   public:
-    explicit ProbeActors(vtkRenderer* renderer);
+    /// ball_opacity: 1 spares a renderer the pass for see-through things, most of a frame drawn in software.
+    ProbeActors(vtkRenderer* renderer, double ball_opacity);
 
     /// Size of the label and width of the line between tip and proxy, in pixels.
     void set_scale(int font_px, double line_px);
