@@ -115,6 +115,28 @@ VM_TEST(rate, every_tick_comes_for_10_s_at_10_khz, 30)
     every_tick_comes(10000);
 }
 
+/* Making the thread is START's business, not the ticks'. */
+VM_TEST(rate, start_misses_no_tick, 60)
+{
+    const struct phantom_start start = {.ramp_ms = 1, .stale_ms = 60000};
+    int fd = vm_open_feeder();
+    const struct phantom_status* page = vm_map(fd);
+    struct phantom_status status;
+    uint64_t missed = 0;
+    int starts = 0;
+
+    vm_set_rate(fd, 10000);
+    for (int i = 0; i < 200; i++) {
+        vm_expect(fd, PHANTOM_START, &start, 0, "START");
+        vm_wait_ticks(page, 10);
+        vm_status(page, &status);
+        missed += status.missed;
+        starts += status.missed != 0;
+        vm_expect(fd, PHANTOM_STOP, NULL, 0, "STOP");
+    }
+    CHECK(missed == 0, "%d of 200 starts missed %llu ticks", starts, (unsigned long long)missed);
+}
+
 static void* change_rates(void* argument)
 {
     int fd = *(int*)argument;

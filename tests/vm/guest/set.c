@@ -281,6 +281,42 @@ VM_TEST(set, a_refused_set_leaves_contact_alone, 20)
     vm_plate_submit(fd, 2);
 }
 
+VM_TEST(set, an_object_number_twice_is_refused, 10)
+{
+    int fd = vm_open_feeder();
+    struct phantom_object objects[PHANTOM_OBJECTS_MAX];
+    struct vm_plate plate;
+
+    vm_plate_make(&plate, 1);
+    for (uint32_t i = 0; i < PHANTOM_OBJECTS_MAX; i++) {
+        objects[i] = plate.object;
+        objects[i].object = 1000 + i;
+    }
+    plate.set.object_count = PHANTOM_OBJECTS_MAX;
+    plate.set.objects = (uintptr_t)objects;
+    for (uint32_t i = 0; i < PHANTOM_OBJECTS_MAX - 1; i++) {
+        objects[PHANTOM_OBJECTS_MAX - 1].object = objects[i].object;
+        vm_expect(fd, PHANTOM_SUBMIT_SET, &plate.set, -EINVAL, "SUBMIT_SET with an object number twice");
+    }
+    objects[PHANTOM_OBJECTS_MAX - 1].object = 0xffffffff;
+    vm_expect(fd, PHANTOM_SUBMIT_SET, &plate.set, 0, "SUBMIT_SET with sixteen object numbers");
+}
+
+VM_TEST(set, origin_may_be_as_far_as_positions_go, 10)
+{
+    int fd = vm_open_feeder();
+    struct vm_plate plate;
+
+    for (int axis = 0; axis < 3; axis++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            vm_plate_make(&plate, 1u + (unsigned int)(2 * axis + (sign > 0)));
+            plate.set.origin_nm[axis] = sign * (PHANTOM_POSITION_MAX_NM + 1);
+            vm_expect(fd, PHANTOM_SUBMIT_SET, &plate.set, -EINVAL, "SUBMIT_SET with an origin too far");
+            plate.set.origin_nm[axis] = sign * PHANTOM_POSITION_MAX_NM;
+            vm_expect(fd, PHANTOM_SUBMIT_SET, &plate.set, 0, "SUBMIT_SET with the farthest origin");
+        }
+}
+
 VM_TEST(set, id_must_grow, 10)
 {
     int fd = vm_open_feeder();

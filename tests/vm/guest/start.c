@@ -39,6 +39,18 @@ VM_TEST(start, more_force_than_the_device_has_is_refused, 10)
     vm_expect(fd, PHANTOM_START, &start, 0, "START with all of the device's force");
 }
 
+VM_TEST(start, ramp_longer_than_the_limit_is_refused, 10)
+{
+    int fd = vm_open_feeder();
+    struct phantom_start start = {.ramp_ms = PHANTOM_RAMP_MAX_MS + 1};
+
+    vm_expect(fd, PHANTOM_START, &start, -EINVAL, "START with a ramp 1 ms too long");
+    start.ramp_ms = 0xffffffff;
+    vm_expect(fd, PHANTOM_START, &start, -EINVAL, "START with a ramp of 50 days");
+    start.ramp_ms = PHANTOM_RAMP_MAX_MS;
+    vm_expect(fd, PHANTOM_START, &start, 0, "START with the longest ramp");
+}
+
 VM_TEST(start, second_start_is_busy_and_stop_is_idempotent, 10)
 {
     const struct phantom_start start = {0};
