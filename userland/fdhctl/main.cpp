@@ -5,6 +5,7 @@
 #include <exception>
 #include <iterator>
 #include <string>
+#include <string_view>
 
 #include "fdhctl/command_line.hpp"
 
@@ -48,6 +49,14 @@ int run(int argc, char** argv)
     for (std::size_t i = 0; i < std::size(commands); ++i) {
         apps[i] = app.add_subcommand(commands[i].name, commands[i].description);
         runs[i] = commands[i].add(*apps[i]);
+    }
+    // CLI11 would only say that a command is missing.
+    const auto is_named = [argv](const Command& command) {
+        return std::string_view(command.name) == argv[1];
+    };
+    if (argc > 1 && argv[1][0] != '-' && std::none_of(std::begin(commands), std::end(commands), is_named)) {
+        std::fprintf(stderr, "fdhctl: unknown command '%s' (see fdhctl --help)\n", argv[1]);
+        return exit_usage;
     }
     try {
         app.parse(argc, argv);

@@ -49,6 +49,8 @@ class SetBuilder {
     void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out) const;
     /// False when the set has no room for the face's material or object.
     bool claim(std::uint32_t object, device::PatchSet& out);
+    /// Forgets the numbers that claim() gave for these faces.
+    void release(const std::vector<std::array<std::uint32_t, 2>>& faces);
     void fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out);
     phantom_patch patch(std::uint32_t object, std::uint32_t face,
                         const std::array<std::int64_t, 3>& origin_nm) const;

@@ -180,6 +180,11 @@ void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, de
     // Scratch is cleared entry by entry: a set is small, the scene may be large.
     for (const phantom_patch& entry : out.patches)
         slot_[entry.face] = no_slot;
+    release(faces);
+}
+
+void SetBuilder::release(const std::vector<std::array<std::uint32_t, 2>>& faces)
+{
     for (const auto& [object, face] : faces) {
         object_slot_[object] = no_slot;
         material_slot_[scene_.objects[object].material] = no_slot;
@@ -201,6 +206,12 @@ void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<doubl
         }
     }
     std::sort(faces_.begin(), faces_.end());
+    // Claimed again in that order: numbers of materials and objects must not depend on who was nearest.
+    release(faces_);
+    out.materials.clear();
+    out.objects.clear();
+    for (const auto& [object, face] : faces_)
+        claim(object, out);
     fill(faces_, out);
     const double covered_nm = std::floor(coverage_mm * nm_per_mm) - rounding_nm;
     out.header.radius_nm = to_u32(covered_nm);

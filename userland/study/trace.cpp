@@ -43,6 +43,7 @@ class Tracer {
             return rate.error();
         device::UsermodeOptions usermode;
         usermode.virtual_clock = true;
+        rate_hz_ = *rate;
         usermode.rate_hz = *rate;
         usermode.isa = wants_double() ? PHANTOM_ISA_DOUBLE : options_.isa;
         usermode.patches_max = patches_max();
@@ -98,7 +99,26 @@ class Tracer {
             start.flags = PHANTOM_START_LIMITS_OFF;
             start.stale_ms = never_stale_ms;
         }
-        return device_->start(start);
+        if (Status status = device_->start(start); !status)
+            return status;
+        return options_.limits ? success() : settle();
+    }
+
+    /// The servo fades its first set in. Without limits that is stepped away at the first position, so that
+    /// the first row has its full force.
+    Status settle()
+    {
+        const std::uint32_t ticks_max = 2 + 2 * static_cast<std::uint32_t>(1e-9 * PHANTOM_FADE_NS * rate_hz_);
+        for (std::uint32_t tick = 0; tick < ticks_max; ++tick) {
+            if (Status status = device_->step(1); !status)
+                return status;
+            const Result<std::vector<phantom_tick>> ticks = device_->read_ticks();
+            if (!ticks)
+                return ticks.error();
+            if (ticks->empty() || (ticks->back().flags & PHANTOM_TICK_FADING) == 0)
+                break;
+        }
+        return success();
     }
 
     /// Whether this tick gets a set. A set of everything stays good until it is stale.
@@ -192,6 +212,7 @@ class Tracer {
     std::optional<fdh::SceneTree<14>> tree_;
     std::optional<feeder::Feeder> feeder_;
     phantom_model model_{};
+    std::uint32_t rate_hz_ = 0;
     std::array<double, 3> proxy_mm_{}; ///< after the tick before
     std::array<double, 3> force_n_{};  ///< of the tick before
     bool inside_ = false;

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A set against the scene it was built from.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "feeder/feeder.hpp"
+#include "scenes.hpp"
+
+namespace phantom::test {
+namespace {
+
+/// Two spheres that touch, the second turned and moved, of two materials.
+scene::Scene two_spheres()
+{
+    scene::Scene scene;
+    scene.materials.push_back({"unused", 9.0, 9.0, 9.0});
+    scene.materials.push_back({"plain", 0.5, 2.0, {}});
+    scene.materials.push_back({"damped", 1.25, 1.5, 0.75});
+    add_object(scene, sphere(20.0, 16, 32), {}, 1);
+    add_object(scene, sphere(20.0, 16, 32), quarter_turn({40.0, 0.0, 0.0}), 2);
+    return scene;
+}
+
+struct Built {
+    scene::Scene scene = two_spheres();
+    fdh::SceneTree<14> tree = scene::build_tree<14>(scene);
+    feeder::SetBuilder builder{scene};
+    device::PatchSet set;
+    fdh::Nearest near;
+
+    void at(const Vector& centre, std::size_t count)
+    {
+        near.clear();
+        tree.nearest(centre, count, 50.0, near);
+        builder.build(near.hits, centre, near.coverage, set);
+    }
+    /// A corner of a patch, in the world, as the scene has it.
+    Vector corner(const phantom_patch& patch, int corner) const
+    {
+        const scene::Object& object = scene.objects[patch.face >= scene.objects[1].first_face ? 1 : 0];
+        const Vector& v = object.mesh.vertices[object.mesh.faces[patch.face - object.first_face][corner]];
+        const auto& r = object.pose.rotation;
+        Vector out = object.pose.translation;
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                out[row] += r[3 * row + column] * v[column];
+        return out;
+    }
+};
+
+/// Between the spheres, nearer to the second.
+constexpr Vector between{20.7, 0.31, 1.123456789};
+
+TEST(SetBuilder, PositionsAreTheWorldPositionsRoundedToNanometres)
+{
+    Built built;
+    built.at(between, 100);
+    ASSERT_EQ(built.set.patches.size(), 100U);
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(built.set.header.origin_nm[axis], std::llround(between[axis] * 1e6));
+    for (const phantom_patch& patch : built.set.patches)
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vector world = built.corner(patch, corner);
+            for (int axis = 0; axis < 3; ++axis) {
+                const double nm =
+                    static_cast<double>(built.set.header.origin_nm[axis] + patch.vertex_nm[corner][axis]);
+                EXPECT_LE(std::abs(nm - world[axis] * 1e6), 0.5 + 1e-6);
+            }
+        }
+}
+
+TEST(SetBuilder, NormalsAreUnitInQ30AndTurnedWithTheObject)
+{
+    Built built;
+    built.at(between, 100);
+    bool turned = false;
+    for (const phantom_patch& patch : built.set.patches) {
+        const scene::Object& object = built.scene.objects[built.set.objects[patch.object].object];
+        turned = turned || &object == &built.scene.objects[1];
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vector world = built.corner(patch, corner);
+            double squared = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double n = patch.normal_q30[corner][axis] / double{PHANTOM_Q30_ONE};
+                squared += n * n;
+                // Radial: the sphere's own normal, wherever the sphere is.
+                EXPECT_NEAR(n, (world[axis] - object.pose.translation[axis]) / 20.0, 2e-9);
+            }
+            EXPECT_NEAR(std::sqrt(squared), 1.0, 2e-9);
+        }
+    }
+    EXPECT_TRUE(turned);
+}
+
+TEST(SetBuilder, ANormalWithoutDirectionBecomesTheFacesOwn)
+{
+    scene::Scene scene;
+    scene.materials.push_back({});
+    mesh::Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.faces = {{0, 1, 2}};
+    mesh.normals = {{0, 0, 0}};
+    mesh.face_normals = {{0, 0, 0}};
+    connect(mesh);
+    add_object(scene, mesh, {}, 0);
+    feeder::SetBuilder builder(scene);
+    device::PatchSet set;
+    builder.build({{0, 0, 0.0}}, {0, 0, 0}, 1.0, set);
+    ASSERT_EQ(set.patches.size(), 1U);
+    for (int corner = 0; corner < 3; ++corner)
+        EXPECT_EQ(set.patches[0].normal_q30[corner][2], PHANTOM_Q30_ONE);
+}
+
+TEST(SetBuilder, AdjacencyIsSymmetricAndNamesTheSceneNeighbour)
+{
+    Built built;
+    built.at(between, 100);
+    const auto& patches = built.set.patches;
+    int inside = 0, outside = 0;
+    for (std::uint32_t i = 0; i < patches.size(); ++i) {
+        const scene::Object& object = built.scene.objects[built.set.objects[patches[i].object].object];
+        const mesh::Triple& expected = object.mesh.neighbours[patches[i].face - object.first_face];
+        for (int edge = 0; edge < 3; ++edge) {
+            const std::uint32_t neighbour = patches[i].neighbour[edge];
+            if (neighbour == PHANTOM_PATCH_NONE) {
+                ++outside;
+                for (const phantom_patch& patch : patches)
+                    EXPECT_NE(patch.face, object.first_face + expected[edge]);
+                continue;
+            }
+            ++inside;
+            ASSERT_LT(neighbour, patches.size());
+            EXPECT_EQ(patches[neighbour].face, object.first_face + expected[edge]);
+            EXPECT_EQ(std::count(patches[neighbour].neighbour, patches[neighbour].neighbour + 3, i), 1);
+        }
+    }
+    EXPECT_GT(inside, 100);
+    EXPECT_GT(outside, 5);
+}
+
+TEST(SetBuilder, FacesAndVerticesHaveSceneWideNumbers)
+{
+    Built built;
+    built.at(between, 100);
+    for (const phantom_patch& patch : built.set.patches) {
+        const scene::Object& object = built.scene.objects[built.set.objects[patch.object].object];
+        const mesh::Triple& corners = object.mesh.faces[patch.face - object.first_face];
+        for (int corner = 0; corner < 3; ++corner)
+            EXPECT_EQ(patch.vertex[corner], object.first_vertex + corners[corner]);
+    }
+}
+
+TEST(SetBuilder, OnlyMaterialsThatAreUsedAreCarriedWithTheirEffects)
+{
+    Built built;
+    built.at(between, 100);
+    ASSERT_EQ(built.set.materials.size(), 2U);
+    ASSERT_EQ(built.set.objects.size(), 2U);
+    for (const phantom_patch& patch : built.set.patches) {
+        const bool second = built.set.objects[patch.object].object == 1;
+        const phantom_material& material = built.set.materials[patch.material];
+        EXPECT_EQ(material.stiffness_mn_mm, second ? 1250U : 500U);
+        EXPECT_EQ(material.radius_nm, second ? 1500000U : 2000000U);
+        EXPECT_EQ(material.damping_mns_m, second ? 750U : 0U);
+        EXPECT_EQ(material.effects, second ? PHANTOM_EFFECT_DAMPING : 0U);
+    }
+    // Far from the damped one nobody calls for damping.
+    built.at({-20.5, 0, 0}, 20);
+    ASSERT_EQ(built.set.materials.size(), 1U);
+    EXPECT_EQ(built.set.materials[0].effects, 0U);
+}
+
+TEST(SetBuilder, CoverageHoldsAgainstBruteForce)
+{
+    Built built;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> coordinate(-30, 70);
+    std::vector<fdh::Hit> all;
+    for (int round = 0; round < 200; ++round) {
+        const Vector centre{coordinate(random), coordinate(random) / 3, coordinate(random) / 3};
+        built.at(centre, 40);
+        const double covered_mm = built.set.header.radius_nm * 1e-6;
+        EXPECT_LE(covered_mm, built.near.coverage);
+        EXPECT_GE(covered_mm, built.near.coverage - 4e-6);
+        std::vector<std::uint32_t> faces;
+        for (const phantom_patch& patch : built.set.patches)
+            faces.push_back(patch.face);
+        // Every triangle that the whole scene has within the promise is there.
+        all.clear();
+        built.tree.within(centre, covered_mm, all);
+        for (const fdh::Hit& hit : all) {
+            const std::uint32_t face = built.scene.objects[hit.object].first_face + hit.triangle;
+            EXPECT_EQ(std::count(faces.begin(), faces.end(), face), 1) << "face " << face;
+        }
+    }
+}
+
+TEST(SetBuilder, TheOrderOfTheHitsChangesNoBit)
+{
+    Built built;
+    built.at(between, 60);
+    const auto expected = built.set.patches;
+    auto hits = built.near.hits;
+    std::mt19937 random(6);
+    std::shuffle(hits.begin(), hits.end(), random);
+    built.builder.build(hits, between, built.near.coverage, built.set);
+    ASSERT_EQ(built.set.patches.size(), expected.size());
+    EXPECT_EQ(std::memcmp(built.set.patches.data(), expected.data(), expected.size() * sizeof(phantom_patch)),
+              0);
+}
+
+TEST(SetBuilder, TooManyMaterialsEndTheCoverageAtTheFirstLeftOut)
+{
+    scene::Scene scene;
+    std::vector<fdh::Hit> hits;
+    for (std::uint32_t i = 0; i < PHANTOM_MATERIALS_MAX + 3; ++i) {
+        scene.materials.push_back({});
+        add_object(scene, sphere(1.0, 4, 6), {}, i);
+        hits.push_back({i, 0, 0.5 * i});
+    }
+    feeder::SetBuilder builder(scene);
+    device::PatchSet set;
+    builder.build(hits, {0, 0, 0}, 100.0, set);
+    EXPECT_EQ(set.materials.size(), std::size_t{PHANTOM_MATERIALS_MAX});
+    EXPECT_EQ(set.patches.size(), std::size_t{PHANTOM_MATERIALS_MAX});
+    EXPECT_LE(set.header.radius_nm, 8000000U);
+    EXPECT_GE(set.header.radius_nm, 7999990U);
+    // The scratch is clean: the next set knows nothing of this one.
+    builder.build({hits[17]}, {0, 0, 0}, 1.0, set);
+    ASSERT_EQ(set.materials.size(), 1U);
+    EXPECT_EQ(set.patches[0].material, 0U);
+}
+
+TEST(SetBuilder, EverythingCoversEverything)
+{
+    Built built;
+    built.builder.build_all({20, 0, 0}, built.set);
+    EXPECT_EQ(built.set.patches.size(), built.scene.triangles());
+    EXPECT_EQ(built.set.header.radius_nm, 0xffffffffU);
+    for (const phantom_patch& patch : built.set.patches)
+        for (const __u32 neighbour : patch.neighbour)
+            EXPECT_NE(neighbour, PHANTOM_PATCH_NONE);
+}
+
+TEST(CheckReach, RefusesATriangleThatNoSetCanCarryAndNamesTheRemedy)
+{
+    scene::Scene scene;
+    scene.materials.push_back({});
+    mesh::Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {2000, 0, 0}, {0, 10, 0}};
+    mesh.faces = {{0, 1, 2}};
+    mesh.normals = {{0, 0, 1}};
+    mesh.face_normals = {{0, 0, 0}};
+    connect(mesh);
+    add_object(scene, mesh, {}, 0);
+    const Status status = feeder::check_reach(scene, {});
+    ASSERT_FALSE(status.ok());
+    EXPECT_NE(status.error().text().find("face 0"), std::string::npos);
+    EXPECT_NE(status.error().text().find("--split"), std::string::npos);
+    EXPECT_TRUE(feeder::check_reach(sphere_scene(), {}).ok());
+}
+
+} // namespace
+} // namespace phantom::test
