@@ -51,7 +51,7 @@ void phantom_chardev_release(struct phantom_file *file)
 
 	if (file->feeding) {
 		mutex_lock(&chardev->control);
-		phantom_servo_stop(chardev->servo);
+		phantom_servo_stop(chardev->servo, PHANTOM_WISH_ABANDON);
 		phantom_servo_forget(chardev->servo);
 		chardev->feeder = NULL;
 		mutex_unlock(&chardev->control);
@@ -124,7 +124,7 @@ static long phantom_chardev_start(struct phantom_file *file, void __user *argume
 
 static long phantom_chardev_stop(struct phantom_file *file, void __user *argument)
 {
-	phantom_servo_stop(file->chardev->servo);
+	phantom_servo_stop(file->chardev->servo, PHANTOM_WISH_STOP);
 	return 0;
 }
 

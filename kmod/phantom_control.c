@@ -152,15 +152,17 @@ int phantom_servo_start(struct phantom_servo *servo, const struct phantom_start 
 	return error;
 }
 
-void phantom_servo_stop(struct phantom_servo *servo)
+void phantom_servo_stop(struct phantom_servo *servo, u32 wish)
 {
 	static const s32 zero[3];
+	u64 patience;
 
 	if (phantom_control_idle(servo))
 		return;
-	smp_store_release(&servo->stop_wanted, 1);
-	servo->clock->ops->stop(servo->clock, servo,
-				servo->safety.limits.ramp_ns + PHANTOM_STOP_SLACK_NS);
+	/* before the wish: with it the servo may shorten its ramp */
+	patience = servo->safety.limits.ramp_ns + PHANTOM_STOP_SLACK_NS;
+	smp_store_release(&servo->stop_wanted, wish);
+	servo->clock->ops->stop(servo->clock, servo, patience);
 	/* again, for the case that the thread had to be ended before its ramp was */
 	servo->device->ops->write(servo->device, zero);
 	servo->device->ops->stop(servo->device);

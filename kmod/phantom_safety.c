@@ -88,6 +88,22 @@ void phantom_safety_clear(struct phantom_safety *safety)
 	safety->ramp_ns = safety->limits.off ? safety->limits.ramp_ns : 0;
 }
 
+void phantom_safety_stop(struct phantom_safety *safety, bool abandoned)
+{
+	struct phantom_limits *limits = &safety->limits;
+	u32 slew = limits->max_force_un / (PHANTOM_ABANDON_NS / NSEC_PER_MSEC) + 1;
+
+	safety->stopping = true;
+	if (!abandoned || limits->off)
+		return;
+	if (limits->ramp_ns > PHANTOM_ABANDON_NS) {
+		/* the same gain on a shorter ramp: no step */
+		safety->ramp_ns = safety->ramp_ns * PHANTOM_ABANDON_NS / limits->ramp_ns;
+		limits->ramp_ns = PHANTOM_ABANDON_NS;
+	}
+	limits->slew_un_per_ms = max_t(u32, limits->slew_un_per_ms, slew);
+}
+
 /* |vector| rounded up, so that dividing by it never leaves more than was asked for. */
 static u64 phantom_safety_norm(const s64 vector[3])
 {

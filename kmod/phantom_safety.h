@@ -8,7 +8,8 @@
  *
  *   clamp   |F| <= max_force_un
  *   ramp    F g, g from 0 to 1 in ramp_ms after START and CLEAR_FAULT, back to 0 after STOP;
- *           STOP in mid-ramp turns round where it is
+ *           STOP in mid-ramp turns round where it is; an abandoned servo's ramp takes
+ *           PHANTOM_ABANDON_NS at most, and its slew limit gives way to that
  *   slew    |F - F_last| <= slew_un_per_ms dt, dt at most two periods however late the tick
  *
  * Velocity is the low-passed difference of positions (time constant PHANTOM_VELOCITY_TAU_NS):
@@ -33,7 +34,10 @@
 /* 80 Hz: above what a hand does, below what makes an encoder's steps loud. */
 #define PHANTOM_VELOCITY_TAU_NS 2000000
 
-/* Constant while the servo runs. */
+/* Ramp of a servo whose feeder is gone. With the way there it stays within PHANTOM_FADE_NS. */
+#define PHANTOM_ABANDON_NS 15000000
+
+/* Constant while the servo runs, until it is abandoned. */
 struct phantom_limits {
 	bool off; /* PHANTOM_START_LIMITS_OFF */
 	u32 max_force_un;
@@ -71,6 +75,8 @@ void phantom_safety_track(struct phantom_safety *safety, const s64 tip_nm[3], u6
 void phantom_safety_raise(struct phantom_safety *safety, u32 cause);
 /* Unlatches what has no cause in this tick; the force ramps up again when nothing is left. */
 void phantom_safety_clear(struct phantom_safety *safety);
+/* The ramp goes down from here; abandoned: within PHANTOM_ABANDON_NS. */
+void phantom_safety_stop(struct phantom_safety *safety, bool abandoned);
 /* The force to send, and PHANTOM_TICK_CLAMPED, SLEWED and RAMPING. */
 u32 phantom_safety_apply(struct phantom_safety *safety, const s32 target_un[3], u64 elapsed_ns,
 			 u64 period_ns, s32 force_un[3]);

@@ -251,6 +251,7 @@ static void phantom_servo_sense(struct phantom_servo *servo, struct phantom_pass
 static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *pass)
 {
 	struct phantom_safety *safety = &servo->safety;
+	u32 wish;
 	int error;
 
 	if (pass->blend && phantom_fade_begin(&servo->fade, pass->target_un, pass->now_ns))
@@ -259,8 +260,9 @@ static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *
 		pass->flags |= PHANTOM_TICK_FADING;
 	if (xchg(&servo->clear_wanted, 0))
 		phantom_safety_clear(safety);
-	if (xchg(&servo->stop_wanted, 0))
-		safety->stopping = true;
+	wish = xchg(&servo->stop_wanted, 0);
+	if (wish)
+		phantom_safety_stop(safety, wish == PHANTOM_WISH_ABANDON);
 	pass->flags |= phantom_safety_apply(safety, pass->target_un, pass->elapsed_ns,
 					    pass->period_ns, pass->force_un);
 	error = servo->device->ops->write(servo->device, pass->force_un);

@@ -66,7 +66,7 @@ struct phantom_servo {
 	u32 prepare_max_ns; /* longest float section of a submission */
 
 	/* request */
-	u32 stop_wanted;
+	u32 stop_wanted; /* 0 or PHANTOM_WISH_... */
 	u32 clear_wanted;
 
 	/* word, servo while it runs, else control */
@@ -110,8 +110,13 @@ void phantom_servo_destroy(struct phantom_servo *servo);
 
 /* ---- control mutex held; errors as phantom_abi.h says -------------------- */
 int phantom_servo_start(struct phantom_servo *servo, const struct phantom_start *start);
-/* Sleeps until the force has ramped to zero and nothing of the servo runs. */
-void phantom_servo_stop(struct phantom_servo *servo);
+/*
+ * Sleeps until the force has ramped to zero and nothing of the servo runs. ABANDON is for a feeder
+ * that closed or died: nobody chooses triangles any more, so the ramp is PHANTOM_ABANDON_NS at most.
+ */
+#define PHANTOM_WISH_STOP 1
+#define PHANTOM_WISH_ABANDON 2
+void phantom_servo_stop(struct phantom_servo *servo, u32 wish);
 int phantom_servo_clear_fault(struct phantom_servo *servo);
 int phantom_servo_set_rate(struct phantom_servo *servo, u32 rate_hz);
 int phantom_servo_set_model(struct phantom_servo *servo, const struct phantom_model *model);

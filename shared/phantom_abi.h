@@ -18,7 +18,8 @@
  *   ioctl(fd, PHANTOM_START, &start)            the force ramps up
  *   loop: poll(fd, POLLPRI), query the scene round status->tip_nm, PHANTOM_SUBMIT_SET
  *   ioctl(fd, PHANTOM_STOP, NULL)               the force ramps down, then the tick ends
- *   close(fd)                                   implies STOP; also when the feeder is killed
+ *   close(fd)                                   implies STOP, also when the feeder is killed; the force
+ *                                               is zero within PHANTOM_FADE_NS whatever start.ramp_ms
  *   An observer opens O_RDONLY, as many as like: GET_INFO, mmap, poll and read only.
  *
  * STATES
