@@ -20,6 +20,8 @@
 
 #define PROGRAM "/bin/fdhctl"
 #define SCENE "/scenes/sphere.toml"
+#define BUNNY "/scenes/bunny.toml"
+#define BUNNY_MESH "/usr/share/glmark2/models/bunny.obj"
 #define SPHERE_MM 50.0
 #define RADIUS_MM 1.0                 /* the scene's contact radius, by default */
 #define STIFFNESS_N_MM 1.0            /* and its stiffness */
@@ -131,6 +133,34 @@ VM_TEST(program, stroke_over_a_sphere_gives_the_spheres_force, 120)
     CHECK(rows > 2900 && contacts > 1000 && inside > 100, "%u rows, %u in contact, %u inside", rows, contacts,
           inside);
     vm_figure("%u rows, %u in contact, %u below the surface", rows, contacts, inside);
+}
+
+/* The number behind "name": in one line of JSON; fails without it. */
+static double number_of(const char* json, const char* name)
+{
+    const char* at = strstr(json, name);
+
+    CHECK(at, "no %s in %.600s", name, json);
+    return strtod(at + strlen(name), NULL);
+}
+
+VM_TEST(program, bunny_is_touched_at_3_khz_without_a_missed_tick, 300)
+{
+    char text[4096];
+
+    need_program();
+    if (access(BUNNY_MESH, R_OK) < 0)
+        vm_skip("no " BUNNY_MESH ": package glmark2-data");
+    RUN(text, "stroke", BUNNY, "--seconds", "2", "-o", "/tmp/path.csv");
+    RUN(text, "load", BUNNY, "--path", "/tmp/path.csv", "--json");
+    CHECK(strstr(text, "\"device\":\"/dev/phantom_rt0\""), "not the module was fed: %.600s", text);
+    CHECK(strstr(text, "\"faults\":\"none\""), "faults: %.600s", text);
+    CHECK(number_of(text, "\"missed\":") == 0, "ticks were missed: %.600s", text);
+    CHECK(number_of(text, "\"rate_hz\":") == 3000, "another rate: %.600s", text);
+    CHECK(number_of(text, "\"contact_ticks\":") > 1000, "hardly touched: %.600s", text);
+    CHECK(number_of(text, "\"force_max_n\":") > 0.2, "no force to speak of: %.600s", text);
+    vm_figure("%.0f ticks, %.0f in contact, at most %.3f N", number_of(text, "\"ticks\":"),
+              number_of(text, "\"contact_ticks\":"), number_of(text, "\"force_max_n\":"));
 }
 
 VM_TEST(program, status_rate_and_stop_reach_the_running_feeder, 120)
