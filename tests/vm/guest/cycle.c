@@ -156,9 +156,12 @@ VM_TEST(cycle, a_hundred_loads_leave_nothing_behind, 120)
         CHECK(grown < CYCLES / 2, "cache %s holds %ld objects more after %d cycles", after.caches[i].name,
               grown, CYCLES);
     }
-    CHECK(after.vmalloc_areas <= before.vmalloc_areas && after.vmalloc_pages <= before.vmalloc_pages,
+    /* Each CPU keeps up to two thread stacks for later: a few areas come and go. */
+    CHECK(after.vmalloc_areas - before.vmalloc_areas < CYCLES / 2,
           "vmalloc: %ld areas of %ld pages, were %ld of %ld", after.vmalloc_areas, after.vmalloc_pages,
           before.vmalloc_areas, before.vmalloc_pages);
+    CHECK(after.vmalloc_pages - before.vmalloc_pages < CYCLES, "vmalloc: %ld pages, were %ld",
+          after.vmalloc_pages, before.vmalloc_pages);
     CHECK(after.percpu_kb <= before.percpu_kb, "per-CPU memory: %ld kB, was %ld", after.percpu_kb,
           before.percpu_kb);
 }
