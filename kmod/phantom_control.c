@@ -93,19 +93,14 @@ static void phantom_control_begin(struct phantom_servo *servo, const struct phan
 				  const struct phantom_limits *limits)
 {
 	u32 stale_ms = start->stale_ms ? start->stale_ms : PHANTOM_STALE_DEFAULT_MS;
-	u64 now = servo->clock->ops->now_ns(servo->clock);
 
 	phantom_safety_begin(&servo->safety, limits);
 	phantom_fade_reset(&servo->fade);
 	phantom_servo_forget_touch(servo);
 	phantom_stats_begin(&servo->stats);
-	servo->stats.next.start_ns = now;
 	servo->stats.next.state = PHANTOM_STATE_RUNNING;
 	servo->stale_ns = (u64)stale_ms * NSEC_PER_MSEC;
-	servo->next_ns = now + NSEC_PER_SEC / servo->rate_hz;
-	servo->last_ns = now;
-	servo->woken_ns = now;
-	servo->reminded_ns = now;
+	phantom_servo_set_clock(servo);
 	servo->reached = false;
 	servo->warned = false;
 	servo->prepare_max_ns = 0;

@@ -414,10 +414,23 @@ bool phantom_servo_step(struct phantom_servo *servo)
 	return !phantom_safety_stopped(&servo->safety);
 }
 
+void phantom_servo_set_clock(struct phantom_servo *servo)
+{
+	u64 now = phantom_servo_now(servo);
+
+	servo->stats.next.start_ns = now;
+	servo->next_ns = now + NSEC_PER_SEC / READ_ONCE(servo->rate_hz);
+	servo->last_ns = now;
+	servo->woken_ns = now;
+	servo->reminded_ns = now;
+}
+
 void phantom_servo_run(struct phantom_servo *servo)
 {
 	struct phantom_clock *clock = servo->clock;
 
+	/* again: making this thread may have taken many periods, and none of them is a missed tick */
+	phantom_servo_set_clock(servo);
 	while (clock->ops->sleep_until(clock, servo->next_ns))
 		if (!phantom_servo_step(servo))
 			break;

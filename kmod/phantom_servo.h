@@ -149,6 +149,8 @@ static inline void phantom_model_unpack(u64 packed, struct phantom_model *model)
 void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot);
 /* Run state. */
 void phantom_servo_forget_touch(struct phantom_servo *servo);
+/* The run begins now, its first tick one period later. */
+void phantom_servo_set_clock(struct phantom_servo *servo);
 
 /* ---- for clocks only: the servo thread ----------------------------------- */
 /* Ticks until stopped. */

@@ -27,7 +27,7 @@ struct phantom_float_set;
 #define PHANTOM_FLOAT_SET_ALIGN 64
 
 /* Patches converted by one call of prepare(): bounds the float section. */
-#define PHANTOM_FLOAT_PREPARE_MAX 64
+#define PHANTOM_FLOAT_PREPARE_MAX 16
 
 /* Patches evaluated by one call of a bounded tick in the kernel. */
 #define PHANTOM_FLOAT_TICK_MAX PHANTOM_PATCHES_MAX
