@@ -7,7 +7,7 @@ RELEASE := $(BUILD)/release
 JOBS    ?= $(shell nproc)
 CMAKE   := cmake -G Ninja -S userland
 
-.PHONY: help all demo test modules install bench lint clean
+.PHONY: help all demo test vm-test modules install bench lint clean
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -32,6 +32,12 @@ demo: ## touch the Stanford bunny: live status, picture, chart, trace
 test: ## every test that needs no VM and no root, also under ASan and UBSan
 	@tools/bootstrap test
 	@tools/test
+
+vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
+	@tools/bootstrap vm
+	@mkdir -p $(BUILD)
+	@$(MAKE) --no-print-directory programs
+	@tools/vm-test
 
 modules: ## build/modules/RELEASE/phantom_rt.ko for Debian's RT kernels, or KDIR=/path/to/headers
 	@tools/bootstrap modules
