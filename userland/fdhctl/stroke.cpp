@@ -81,7 +81,8 @@ Run add_stroke(CLI::App& app)
         ->check(CLI::Range(0.0, 1e3))
         ->type_name("MM");
     app.add_option("--height", options->stroke.height_mm,
-                   "how high above the surface the sweeps are, negative below it [0.4 of the contact radius]")
+                   "how high above the surface the sweeps are, negative below it "
+                   "[between 0.1 and 0.8 of the contact radius]")
         ->check(CLI::Range(-1e3, 1e3))
         ->type_name("MM");
     app.add_option("--speed-limit", options->stroke.speed_limit_mm_s, "the tip is never faster")

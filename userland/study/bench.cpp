@@ -28,7 +28,7 @@ double build_mtri_s(const scene::Scene& scene, unsigned threads)
 
 /// Points along the surface, half a contact radius above it, one walk step apart: from face to neighbouring
 /// face at random, to a new place where there is no neighbour.
-std::vector<Vector> walk_points(const scene::Scene& scene, std::size_t count)
+std::vector<Vec3> walk_points(const scene::Scene& scene, std::size_t count)
 {
     const fdh::SceneTree<14> no_tree;
     const Surface surface(scene, no_tree);
@@ -45,13 +45,13 @@ std::vector<Vector> walk_points(const scene::Scene& scene, std::size_t count)
         return at.position_mm + height_mm * at.normal;
     };
     std::uint32_t face = 0;
-    Vector from = above(face);
-    std::vector<Vector> points{from};
+    Vec3 from = above(face);
+    std::vector<Vec3> points{from};
     while (points.size() < count) {
         const std::uint32_t next = object.mesh.neighbours[face][random() % 3];
         face = next == mesh::no_neighbour ? static_cast<std::uint32_t>(random() % object.mesh.faces.size())
                                           : next;
-        const Vector to = above(face);
+        const Vec3 to = above(face);
         const int pieces =
             next == mesh::no_neighbour ? 1 : std::max(1, static_cast<int>(length(to - from) / step_mm));
         for (int i = 1; i <= pieces && points.size() < count; ++i)
@@ -61,13 +61,13 @@ std::vector<Vector> walk_points(const scene::Scene& scene, std::size_t count)
     return points;
 }
 
-Distribution query_us(const fdh::SceneTree<14>& tree, const std::vector<Vector>& points, std::uint32_t budget)
+Distribution query_us(const fdh::SceneTree<14>& tree, const std::vector<Vec3>& points, std::uint32_t budget)
 {
     const double radius_mm = feeder::FeederOptions{}.search_radius_mm;
     fdh::Nearest near;
     std::vector<double> us;
     us.reserve(points.size());
-    for (const Vector& point : points)
+    for (const Vec3& point : points)
         us.push_back(1e-3 * nanoseconds_of([&] {
                          near.clear();
                          tree.nearest(point, budget, radius_mm, near);
@@ -76,7 +76,7 @@ Distribution query_us(const fdh::SceneTree<14>& tree, const std::vector<Vector>&
 }
 
 Result<Distribution> feed_us(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
-                             const std::vector<Vector>& points, std::uint32_t budget)
+                             const std::vector<Vec3>& points, std::uint32_t budget)
 {
     device::UsermodeOptions usermode;
     usermode.virtual_clock = true;
@@ -87,7 +87,7 @@ Result<Distribution> feed_us(const scene::Scene& scene, const fdh::SceneTree<14>
     options.budget = budget;
     feeder::Feeder feeder(scene, tree, *device, options);
     std::vector<double> us;
-    for (const Vector& point : points) {
+    for (const Vec3& point : points) {
         Result<feeder::FeedReport> report = Error{"", "not fed"};
         us.push_back(1e-3 * nanoseconds_of([&] { report = feeder.feed(point, point, false); }));
         if (!report)
@@ -157,7 +157,7 @@ Result<BenchReport> run_bench(const BenchOptions& options)
     report.build_one_mtri_s = build_mtri_s(*scene, 1);
     report.build_all_mtri_s = build_mtri_s(*scene, report.threads);
     progress(0.7);
-    const std::vector<Vector> walk = walk_points(*scene, options.queries);
+    const std::vector<Vec3> walk = walk_points(*scene, options.queries);
     report.walk_us = query_us(tree, walk, options.budget);
     report.jump_us = query_us(tree, points_near_surface(*scene, options.queries, 4), options.budget);
     const Result<Distribution> feed = feed_us(*scene, tree, walk, options.budget);

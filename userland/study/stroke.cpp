@@ -14,7 +14,7 @@ namespace phantom::study {
 
 namespace {
 
-constexpr Vector up{0, 0, 1};
+constexpr Vec3 up{0, 0, 1};
 
 /// Parts of the time spent speeding up, and the same slowing down.
 constexpr double ease_part = 0.1;
@@ -33,17 +33,23 @@ constexpr double footprint_part = 0.36;
 constexpr std::size_t presses = 6;
 constexpr double press_slowness = 6.0;
 
+/// Height of the sweeps when none is asked for, in contact radii: a hand presses now more, now less.
+constexpr double height_mean = 0.45;
+constexpr double height_swing = 0.35;
+/// Way of one swing, as part of the scene's size.
+constexpr double swing_part = 0.4;
+
 /// A polyline by the part of its length; parts must not fall from call to call.
 class Along {
   public:
-    explicit Along(const std::vector<Vector>& line) : line_(&line), way_(line.size(), 0.0)
+    explicit Along(const std::vector<Vec3>& line) : line_(&line), way_(line.size(), 0.0)
     {
         for (std::size_t i = 1; i < line.size(); ++i)
             way_[i] = way_[i - 1] + length(line[i] - line[i - 1]);
     }
-    Vector at(double part)
+    Vec3 at(double part)
     {
-        const std::vector<Vector>& line = *line_;
+        const std::vector<Vec3>& line = *line_;
         if (line.size() < 2)
             return line.front();
         const double gone = part * way_.back();
@@ -55,7 +61,7 @@ class Along {
     }
 
   private:
-    const std::vector<Vector>* line_;
+    const std::vector<Vec3>* line_;
     std::vector<double> way_;
     std::size_t segment_ = 0;
 };
@@ -88,7 +94,7 @@ class Stroke {
         for (int i = 0; i < waypoints; ++i) {
             const double turn = 2.0 * std::numbers::pi * i / waypoints;
             const double part[2] = {std::sin(3.0 * turn), std::sin(2.0 * turn + 0.5)};
-            Vector start{0, 0, top};
+            Vec3 start{0, 0, top};
             for (int axis = 0; axis < 2; ++axis)
                 start[axis] = 0.5 * (bounds_.low[axis] + bounds_.high[axis]) +
                               footprint_part * part[axis] * (bounds_.high[axis] - bounds_.low[axis]);
@@ -124,8 +130,8 @@ class Stroke {
         // Every step goes on or brings the next waypoint nearer; the count bounds a scene of one flat speck.
         const std::size_t steps_max = static_cast<std::size_t>(length_wanted() / step_mm_) * 4 + 1000;
         for (std::size_t step = 0; step < steps_max && gone_mm < length_wanted(); ++step) {
-            const Vector way = seen_[target].position_mm - here.position_mm;
-            const Vector tangent = way - dot(way, here.normal) * here.normal;
+            const Vec3 way = seen_[target].position_mm - here.position_mm;
+            const Vec3 tangent = way - dot(way, here.normal) * here.normal;
             const double way_mm = length(way);
             if (way_mm < 1.5 * step_mm_ || length(tangent) < 0.1 * way_mm || stuck > 20) {
                 next_target();
@@ -145,7 +151,7 @@ class Stroke {
 
     /// A way from rest to rest. Slowness stretches its share of the time.
     struct Piece {
-        std::vector<Vector> line;
+        std::vector<Vec3> line;
         double slowness = 1.0;
 
         [[nodiscard]] double way_mm() const
@@ -157,26 +163,39 @@ class Stroke {
         }
     };
 
+    /// Above the surface, so far along the walk.
+    double height_mm(double gone_mm) const
+    {
+        if (options_.height_mm)
+            return *options_.height_mm;
+        const double turn = 2.0 * std::numbers::pi * gone_mm / (swing_part * bounds_.extent());
+        return radius_mm_ * (height_mean + height_swing * std::sin(turn));
+    }
+
     /// The walk at its height, smoothed, with the way down before it and the way up behind it.
     struct Lifted {
-        std::vector<Vector> line;
+        std::vector<Vec3> line;
         std::size_t first = 0; ///< of the walk in line
     };
     Lifted lifted() const
     {
-        const double height = options_.height_mm.value_or(0.4 * radius_mm_);
         Lifted out;
-        const auto climb = [&](const Vector& from, const Vector& to) {
+        const auto climb = [&](const Vec3& from, const Vec3& to) {
             const int pieces = std::max(1, static_cast<int>(length(to - from) / step_mm_));
             for (int i = 0; i < pieces; ++i)
                 out.line.push_back(from + (static_cast<double>(i) / pieces) * (to - from));
         };
-        const auto at = [&](const SurfacePoint& point) { return point.position_mm + height * point.normal; };
+        double gone_mm = 0;
+        const auto at = [&](const SurfacePoint& point) {
+            return point.position_mm + height_mm(gone_mm) * point.normal;
+        };
         climb(walk_.front().position_mm + clearance_mm() * up, at(walk_.front()));
         out.first = out.line.size();
-        for (const SurfacePoint& point : walk_)
-            out.line.push_back(at(point));
-        const Vector away = walk_.back().position_mm + clearance_mm() * walk_.back().normal;
+        for (std::size_t i = 0; i < walk_.size(); ++i) {
+            gone_mm += i > 0 ? length(walk_[i].position_mm - walk_[i - 1].position_mm) : 0.0;
+            out.line.push_back(at(walk_[i]));
+        }
+        const Vec3 away = walk_.back().position_mm + clearance_mm() * walk_.back().normal;
         climb(at(walk_.back()), away);
         out.line.push_back(away);
         smooth(out.line);
@@ -196,7 +215,7 @@ class Stroke {
             if (depth == 0 || pressed == presses || i != place)
                 continue;
             const SurfacePoint& under = walk_[i - lifted.first];
-            const Vector deep = under.position_mm - depth * under.normal;
+            const Vec3 deep = under.position_mm - depth * under.normal;
             pieces.push_back({{lifted.line[i], deep}, press_slowness});
             pieces.push_back({{deep, lifted.line[i]}, press_slowness});
             pieces.push_back({{lifted.line[i]}, 1.0});
@@ -206,15 +225,15 @@ class Stroke {
     }
 
     /// Running means over a few steps, three times: nearly Gaussian, ends fixed.
-    static void smooth(std::vector<Vector>& line)
+    static void smooth(std::vector<Vec3>& line)
     {
         constexpr std::ptrdiff_t half = 6;
         const auto size = static_cast<std::ptrdiff_t>(line.size());
         for (int pass = 0; pass < 3; ++pass) {
-            std::vector<Vector> out(line.size());
+            std::vector<Vec3> out(line.size());
             for (std::ptrdiff_t i = 0; i < size; ++i) {
                 const std::ptrdiff_t reach = std::min({half, i, size - 1 - i});
-                Vector sum{};
+                Vec3 sum{};
                 for (std::ptrdiff_t k = i - reach; k <= i + reach; ++k)
                     sum = sum + line[static_cast<std::size_t>(k)];
                 out[static_cast<std::size_t>(i)] = (1.0 / static_cast<double>(2 * reach + 1)) * sum;

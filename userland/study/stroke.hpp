@@ -17,8 +17,8 @@ struct StrokeOptions {
     /// How deep the tip presses in, straight and back, at a few places of the stroke; 0: it does not. Half
     /// the largest contact radius when not given.
     std::optional<double> depth_mm{};
-    /// How high above the surface the sweeps are, negative below it; 0.4 of the largest contact radius when
-    /// not given.
+    /// How high above the surface the sweeps are, negative below it; not given: now higher, now lower,
+    /// between 0.1 and 0.8 of the largest contact radius.
     std::optional<double> height_mm{};
     double speed_limit_mm_s = 60.0;
 };

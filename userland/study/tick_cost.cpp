@@ -57,13 +57,13 @@ FloatSet prepared(const phantom_float_ops& ops, const device::PatchSet& set, dou
 }
 
 /// Positions round a point, a small step apart.
-std::vector<Vector> wander(const Vector& around, std::mt19937_64& random)
+std::vector<Vec3> wander(const Vec3& around, std::mt19937_64& random)
 {
     std::normal_distribution<double> normal;
-    std::vector<Vector> tips;
-    Vector tip = around;
+    std::vector<Vec3> tips;
+    Vec3 tip = around;
     for (std::size_t i = 0; i < tips_per_set; ++i) {
-        const Vector step = tip_step_mm * unit({normal(random), normal(random), normal(random)});
+        const Vec3 step = tip_step_mm * unit({normal(random), normal(random), normal(random)});
         // Back to where it came from every other time: it stays within the set.
         tip = i % 2 ? around : around + step;
         tips.push_back(tip);
@@ -73,14 +73,14 @@ std::vector<Vector> wander(const Vector& around, std::mt19937_64& random)
 
 /// Times ops.tick() over the tips; adds to samples and contacts.
 void time_float_ticks(const phantom_float_ops& ops, const phantom_model& model, const device::PatchSet& set,
-                      const FloatSet& floats, const std::vector<Vector>& tips, std::vector<double>& samples,
+                      const FloatSet& floats, const std::vector<Vec3>& tips, std::vector<double>& samples,
                       double& contacts)
 {
     phantom_float_job job{};
     job.set = floats.get();
     job.model = model;
     job.proxy_face = PHANTOM_PATCH_NONE;
-    for (const Vector& tip : tips) {
+    for (const Vec3& tip : tips) {
         const std::array<std::int64_t, 3> tip_nm = feeder::to_nanometres(tip);
         for (int axis = 0; axis < 3; ++axis) {
             job.previous_nm[axis] = job.tip_nm[axis];
@@ -92,9 +92,9 @@ void time_float_ticks(const phantom_float_ops& ops, const phantom_model& model, 
     }
 }
 
-Status time_whole_ticks(device::Device& device, const std::vector<Vector>& tips, std::vector<double>& samples)
+Status time_whole_ticks(device::Device& device, const std::vector<Vec3>& tips, std::vector<double>& samples)
 {
-    for (const Vector& tip : tips) {
+    for (const Vec3& tip : tips) {
         if (Status status = device.move_simulated_tip(feeder::to_nanometres(tip)); !status)
             return status;
         Status stepped = success();
@@ -107,13 +107,13 @@ Status time_whole_ticks(device::Device& device, const std::vector<Vector>& tips,
 
 } // namespace
 
-std::vector<Vector> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed)
+std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed)
 {
     const fdh::SceneTree<14> no_tree;
     const Surface surface(scene, no_tree);
     std::mt19937_64 random(seed);
     std::uniform_int_distribution<std::uint64_t> pick(0, scene.triangles() - 1);
-    std::vector<Vector> points;
+    std::vector<Vec3> points;
     while (points.size() < count) {
         std::uint64_t face = pick(random);
         std::uint32_t object = 0;
@@ -151,7 +151,7 @@ Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14
     TickCost cost;
     cost.isa = isa;
     bool started = false;
-    for (const Vector& point : points_near_surface(scene, sets, 1)) {
+    for (const Vec3& point : points_near_surface(scene, sets, 1)) {
         near.clear();
         tree.nearest(point, budget, search.search_radius_mm, near);
         builder.build(near.hits, point, near.coverage, set);
@@ -161,7 +161,7 @@ Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14
         double microseconds = 0;
         const FloatSet floats = prepared(ops, set, microseconds);
         prepare_us.push_back(microseconds);
-        const std::vector<Vector> tips = wander(point, random);
+        const std::vector<Vec3> tips = wander(point, random);
         time_float_ticks(ops, model, set, floats, tips, float_ns, cost.contacts);
         if (Result<bool> taken = device->try_submit(set); !taken)
             return taken.error();

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "base/vector.hpp"
 #include "fdh/scene_tree.hpp"
 #include "phantom_abi.h"
 #include "scene/scene.hpp"
 #include "study/distribution.hpp"
-#include "study/vector.hpp"
 
 namespace phantom::study {
 
 /// Points half a contact radius above the middles of faces spread over the scene. Repeatable.
-std::vector<Vector> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed);
+std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed);
 
 struct TickCost {
     std::uint32_t isa = PHANTOM_ISA_NONE;

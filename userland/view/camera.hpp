@@ -6,8 +6,8 @@
 
 #include <vtkRenderer.h>
 
+#include "base/vector.hpp"
 #include "view/camera_angles.hpp"
-#include "view/vector.hpp"
 
 namespace phantom::view {
 

@@ -3,7 +3,7 @@
 // haptic device.
 #pragma once
 
-#include "view/vector.hpp"
+#include "base/vector.hpp"
 
 namespace phantom::view {
 

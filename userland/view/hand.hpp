@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-#include "view/vector.hpp"
+#include "base/vector.hpp"
 
 namespace phantom::view {
 

@@ -4,8 +4,8 @@
 
 #include <vtkRenderer.h>
 
+#include "base/vector.hpp"
 #include "view/surface_picker.hpp"
-#include "view/vector.hpp"
 
 namespace phantom::view {
 

@@ -9,8 +9,8 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
+#include "base/vector.hpp"
 #include "scene/scene.hpp"
-#include "view/vector.hpp"
 
 namespace phantom::view {
 

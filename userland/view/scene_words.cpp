@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "view/vector.hpp"
+#include "base/vector.hpp"
 
 namespace phantom::view {
 

@@ -9,9 +9,9 @@
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
 
+#include "base/vector.hpp"
 #include "fdh/query.hpp"
 #include "scene/scene.hpp"
-#include "view/vector.hpp"
 
 namespace phantom::view {
 

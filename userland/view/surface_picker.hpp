@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/vector.hpp"
 #include "scene/scene.hpp"
 #include "view/scene_actors.hpp"
-#include "view/vector.hpp"
 
 namespace phantom::view {
 

@@ -2,7 +2,7 @@
 // Touch: one moment of the tip at the surface, live or out of a trace. What every picture shows.
 #pragma once
 
-#include "view/vector.hpp"
+#include "base/vector.hpp"
 
 namespace phantom::view {
 

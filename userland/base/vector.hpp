@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace phantom::view {
+namespace phantom {
 
 using Vec3 = std::array<double, 3>;
 
@@ -41,6 +41,12 @@ inline Vec3 unit_or(const Vec3& a, const Vec3& otherwise)
     return norm > 1e-12 ? (1.0 / norm) * a : otherwise;
 }
 
+/// a / |a|; +z where a has no direction.
+inline Vec3 unit(const Vec3& a)
+{
+    return unit_or(a, {0, 0, 1});
+}
+
 /// A unit vector at right angles to the unit vector n, as near to `wish` as can be.
 inline Vec3 perpendicular(const Vec3& n, const Vec3& wish)
 {
@@ -51,4 +57,4 @@ inline Vec3 perpendicular(const Vec3& n, const Vec3& wish)
     return unit_or(axis - dot(axis, n) * n, {0, 0, 1});
 }
 
-} // namespace phantom::view
+} // namespace phantom
