@@ -28,6 +28,10 @@ using Vector = std::array<double, 3>;
 /// The first tick comes within a period of START; a machine that takes this long has no servo.
 constexpr std::chrono::milliseconds first_tick_patience{1000};
 
+/// The stall limit in user mode, when none is asked for. The arm is simulated, so nobody is in danger when an
+/// ordinary system holds the servo up for a moment, and it does: host stalls of 20 ms are seen.
+constexpr std::uint32_t usermode_stall_us = 1'000'000;
+
 /// STOP ramps for start.ramp_ms (default 250 ms); what is waited for beyond that.
 constexpr std::chrono::milliseconds stop_patience{2000};
 
@@ -143,6 +147,14 @@ struct Session::Impl {
         return success();
     }
 
+    phantom_start start_request() const
+    {
+        phantom_start start = choose_start(options.start, scene.device);
+        if (!device->is_kernel() && start.stall_us == 0)
+            start.stall_us = usermode_stall_us;
+        return start;
+    }
+
     Status first_force()
     {
         if (device->info().device == PHANTOM_DEVICE_SIM) {
@@ -154,7 +166,7 @@ struct Session::Impl {
         } else if (Result<FeedReport> report = feeder->feed(); !report) {
             return report.error();
         }
-        if (Status status = device->start(choose_start(options.start, scene.device)); !status)
+        if (Status status = device->start(start_request()); !status)
             return status;
         started = true;
         const auto begin = Clock::now();
@@ -376,6 +388,11 @@ std::uint32_t Session::rate_hz() const
 const phantom_model& Session::model() const
 {
     return impl_->model;
+}
+
+phantom_start Session::start_request() const
+{
+    return impl_->start_request();
 }
 
 } // namespace phantom::feeder

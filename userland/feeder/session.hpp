@@ -62,6 +62,8 @@ class Session {
     /// Rate and model as chosen at open().
     [[nodiscard]] std::uint32_t rate_hz() const;
     [[nodiscard]] const phantom_model& model() const;
+    /// What START is asked: the options, the scene's [device], and a patient stall limit in user mode.
+    [[nodiscard]] phantom_start start_request() const;
 
   private:
     struct Impl;

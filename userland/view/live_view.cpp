@@ -45,7 +45,7 @@ std::atomic<bool> interrupted{false};
 
 class LiveView : public MouseHandler {
   public:
-    LiveView(const Options& options, feeder::Session& session, const phantom_start& start);
+    LiveView(const Options& options, feeder::Session& session);
 
     Status run_in_window();
     Status run_without_window(const Script& script);
@@ -88,12 +88,12 @@ class LiveView : public MouseHandler {
     std::optional<Error> failure_;
 };
 
-LiveView::LiveView(const Options& options, feeder::Session& session, const phantom_start& start)
+LiveView::LiveView(const Options& options, feeder::Session& session)
     : options_(options),
       session_(session),
       stage_(session.scene(), options.width, options.height, options.offscreen()),
       picker_(session.scene(), stage_.surfaces()),
-      servo_(session, start)
+      servo_(session)
 {
     stage_.set_camera(options.camera.value_or(CameraAngles{}));
     stage_.set_full_scale(least_full_scale_n);
@@ -342,16 +342,6 @@ void catch_signals()
     sigaction(SIGTERM, &action, nullptr);
 }
 
-/// What START is asked. In user mode the arm is simulated, so no hand is in danger when the system holds
-/// the servo up for a moment, and drawing in software does: a stall is then a second, not 20 ms.
-phantom_start start_options(const Options& options)
-{
-    phantom_start start{};
-    if (options.usermode || access(PHANTOM_DEVICE_NODE, R_OK | W_OK) != 0)
-        start.stall_us = 1000000;
-    return start;
-}
-
 feeder::SessionOptions session_options(const Options& options)
 {
     feeder::SessionOptions session;
@@ -360,7 +350,6 @@ feeder::SessionOptions session_options(const Options& options)
     session.force_usermode = options.usermode;
     session.rate_hz = options.rate_hz;
     session.control_socket = options.control;
-    session.start = start_options(options);
     session.say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
     return session;
 }
@@ -385,7 +374,7 @@ Status run_live_view(const Options& options)
 
     Status result = success();
     {
-        LiveView view(options, *session, start_options(options));
+        LiveView view(options, *session);
         if (options.offscreen() || script)
             result = view.run_without_window(script ? *script : view.default_script());
         else

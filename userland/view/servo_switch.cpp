@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "view/servo_switch.hpp"
 
-#include "feeder/servo_choice.hpp"
-
 namespace phantom::view {
 
 Status ServoSwitch::toggle()
@@ -19,7 +17,7 @@ Status ServoSwitch::toggle()
     }
     if (Status set = device.set_model(model_); !set)
         return set;
-    Status started = device.start(feeder::choose_start(start_, session_.scene().device));
+    Status started = device.start(session_.start_request());
     off_ = !started.ok();
     return started;
 }

@@ -8,8 +8,7 @@ namespace phantom::view {
 
 class ServoSwitch {
   public:
-    /// start: what the session was started with; the scene's limits fill its zeros.
-    ServoSwitch(feeder::Session& session, const phantom_start& start) : session_(session), start_(start) {}
+    explicit ServoSwitch(feeder::Session& session) : session_(session) {}
 
     /// Off: the model is set to none, which takes the force to zero within PHANTOM_FADE_NS (STOP alone
     /// ramps for 250 ms), then STOP. On: the model as it was, then START, whose force ramps up.
@@ -18,7 +17,6 @@ class ServoSwitch {
 
   private:
     feeder::Session& session_;
-    phantom_start start_;
     phantom_model model_{}; ///< in force before it was switched off
     bool off_ = false;
 };
