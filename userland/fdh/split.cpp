@@ -200,7 +200,8 @@ class Splitter {
     /// Leaves a range of this size fills, as a cost: full leaves are cheap.
     [[nodiscard]] float leaves(std::uint32_t count) const
     {
-        return static_cast<float>((count + leaf_size_ - 1) / leaf_size_);
+        const std::uint32_t rounded_up = (count + leaf_size_ - 1) / leaf_size_;
+        return static_cast<float>(rounded_up);
     }
 
     void fill(Bins* bins, std::uint32_t begin, std::uint32_t end, Float4 origin, Float4 scale, int last) const

@@ -218,7 +218,8 @@ Result<FeedReport> Feeder::feed()
     return feed(tip, proxy, (status.flags & PHANTOM_TICK_INSIDE) != 0);
 }
 
-Status Feeder::run(std::stop_token stop)
+// By value, as std::jthread hands it over.
+Status Feeder::run(std::stop_token stop) // NOLINT(performance-unnecessary-value-param)
 {
     const auto period = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(1.0 / std::max(1.0, impl_->options.rate_hz)));

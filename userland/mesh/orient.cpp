@@ -144,7 +144,7 @@ std::uint64_t drop_duplicates(Soup& soup, const EdgeIndex& edges)
 {
     struct Side {
         std::uint32_t from, third, face;
-        auto operator<=>(const Side&) const = default;
+        auto operator<=>(const Side&) const = default; // NOLINT(modernize-use-nullptr): its 0
     };
     std::vector<bool> duplicate(soup.faces.size(), false);
     std::vector<Side> sides;

@@ -42,7 +42,7 @@ bool is_text(const std::string& bytes)
         return false;
     if (bytes.size() >= binary_header && promised_bytes(bytes) == bytes.size())
         return false;
-    return std::memchr(bytes.data(), '\0', std::min<std::size_t>(bytes.size(), 512)) == nullptr;
+    return bytes.substr(0, 512).find('\0') == bytes.npos;
 }
 
 /// CGAL looks corners up in an ordered map, where a NaN would be taken for another vertex.

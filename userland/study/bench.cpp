@@ -21,6 +21,7 @@ constexpr int builds = 5;
 double build_mtri_s(const scene::Scene& scene, unsigned threads)
 {
     std::vector<double> ns;
+    ns.reserve(builds);
     for (int i = 0; i < builds; ++i)
         ns.push_back(nanoseconds_of([&] { (void)scene::build_tree<14>(scene, threads); }));
     return static_cast<double>(scene.triangles()) * 1e3 / Distribution::of(std::move(ns)).median;

@@ -25,7 +25,9 @@ vtkSmartPointer<vtkMatrix4x4> matrix_of(const fdh::Pose& pose)
     auto matrix = vtkSmartPointer<vtkMatrix4x4>::New();
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column)
-            matrix->SetElement(row, column, pose.rotation[static_cast<std::size_t>(3 * row + column)]);
+            matrix->SetElement(
+                row, column,
+                pose.rotation[3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)]);
         matrix->SetElement(row, 3, pose.translation[static_cast<std::size_t>(row)]);
     }
     return matrix;

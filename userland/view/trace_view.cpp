@@ -113,7 +113,7 @@ Status run_trace_view(const Options& options)
     const double max_force_n = std::max(trace->max_force_n(), 1e-3);
     const std::deque<Touch> history(trace->rows.begin(), trace->rows.end());
     if (options.chart) {
-        const auto saved = save_chart(history, moment->touch.time_s, options, *options.chart);
+        auto saved = save_chart(history, moment->touch.time_s, options, *options.chart);
         if (!saved)
             return saved;
     }
@@ -130,7 +130,7 @@ Status run_trace_view(const Options& options)
         if (!options.offscreen())
             interact(stage);
         if (options.screenshot) {
-            const auto saved = stage.save_png(*options.screenshot);
+            auto saved = stage.save_png(*options.screenshot);
             if (!saved)
                 return saved;
         }
