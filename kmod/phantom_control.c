@@ -46,7 +46,8 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 	servo->float_ops = float_ops;
 	servo->double_ops = double_ops;
 	servo->features = PHANTOM_FEATURE_MODEL_PAPER | PHANTOM_FEATURE_MODEL_PROJECTED |
-			  PHANTOM_FEATURE_PROXY_PAPER | PHANTOM_FEATURE_ARITH_FLOAT;
+			  PHANTOM_FEATURE_PROXY_PAPER | PHANTOM_FEATURE_ARITH_FLOAT |
+			  PHANTOM_FEATURE_FANS;
 	if (double_ops)
 		servo->features |= PHANTOM_FEATURE_ARITH_DOUBLE;
 	if (device && device->ops->move)

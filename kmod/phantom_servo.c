@@ -64,6 +64,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		.patches = copy->patches,
 		.materials = copy->materials,
 		.patch_count = slot->patch_count,
+		.face_count = copy->face_count,
 		.material_count = copy->header.material_count,
 	};
 

@@ -57,6 +57,7 @@ struct phantom_set_copy {
 	struct phantom_object objects[PHANTOM_OBJECTS_MAX];
 	struct phantom_patch *patches;
 	u32 capacity; /* of patches */
+	u32 face_count; /* patches of kind FACE: they come first. By phantom_set_check_arrays() */
 };
 
 struct phantom_sets {
@@ -86,9 +87,9 @@ void phantom_set_hand_over(struct phantom_sets *sets, struct phantom_slot *slot)
 /* Forgets the waiting set and the last id. */
 void phantom_set_forget(struct phantom_sets *sets);
 
-/* phantom_set_check.c: 0 or -EINVAL. Looks at every field of the copy. */
+/* phantom_set_check.c: 0 or -EINVAL. Looks at every field of the copy; counts its faces. */
 int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 patches_max);
-int phantom_set_check_arrays(const struct phantom_set_copy *copy);
+int phantom_set_check_arrays(struct phantom_set_copy *copy);
 
 /* ---- servo, wait-free ---------------------------------------------------- */
 

@@ -59,6 +59,34 @@ int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 
 	return 0;
 }
 
+static bool phantom_check_same(const s32 a_nm[3], const s32 b_nm[3])
+{
+	return a_nm[0] == b_nm[0] && a_nm[1] == b_nm[1] && a_nm[2] == b_nm[2];
+}
+
+/* A face may have neighbours among the faces; a fan coincides where its kind says, and has none. */
+static bool phantom_check_kind(const struct phantom_patch *patch, u32 face_count)
+{
+	const s32(*vertex_nm)[3] = patch->vertex_nm;
+	int i, same = 0;
+
+	if (patch->kind == PHANTOM_PATCH_FACE) {
+		for (i = 0; i < 3; i++)
+			if (patch->neighbour[i] >= face_count &&
+			    patch->neighbour[i] != PHANTOM_PATCH_NONE)
+				return false;
+		return true;
+	}
+	for (i = 0; i < 3; i++) {
+		same += phantom_check_same(vertex_nm[i], vertex_nm[(i + 1) % 3]);
+		if (patch->neighbour[i] != PHANTOM_PATCH_NONE)
+			return false;
+	}
+	return patch->face == PHANTOM_PATCH_NONE &&
+	       ((patch->kind == PHANTOM_PATCH_EDGE && same == 1) ||
+		(patch->kind == PHANTOM_PATCH_CORNER && same == 3));
+}
+
 static bool phantom_check_patch(const struct phantom_patch *patch, const struct phantom_set *header)
 {
 	int i;
@@ -67,12 +95,9 @@ static bool phantom_check_patch(const struct phantom_patch *patch, const struct 
 		if (!phantom_check_coordinates(patch->vertex_nm[i]) ||
 		    !phantom_check_unit(patch->normal_q30[i]))
 			return false;
-		if (patch->neighbour[i] >= header->patch_count &&
-		    patch->neighbour[i] != PHANTOM_PATCH_NONE)
-			return false;
 	}
 	return patch->object < header->object_count && patch->material < header->material_count &&
-	       patch->kind == PHANTOM_PATCH_FACE && !patch->reserved[0] && !patch->reserved[1];
+	       !patch->reserved[0] && !patch->reserved[1];
 }
 
 static bool phantom_check_material(const struct phantom_material *material)
@@ -101,7 +126,27 @@ static bool phantom_check_object(const struct phantom_object *object)
 	return object->rotation_q30[0] == PHANTOM_Q30_ONE;
 }
 
-int phantom_set_check_arrays(const struct phantom_set_copy *copy)
+/* Faces first, then fans. */
+static bool phantom_check_patches(struct phantom_set_copy *copy)
+{
+	const struct phantom_set *header = &copy->header;
+	u32 i, faces = 0;
+
+	while (faces < header->patch_count && copy->patches[faces].kind == PHANTOM_PATCH_FACE)
+		faces++;
+	copy->face_count = faces;
+	for (i = 0; i < header->patch_count; i++) {
+		const struct phantom_patch *patch = &copy->patches[i];
+
+		if (!phantom_check_patch(patch, header) || !phantom_check_kind(patch, faces))
+			return false;
+		if (i >= faces && patch->kind == PHANTOM_PATCH_FACE)
+			return false;
+	}
+	return true;
+}
+
+int phantom_set_check_arrays(struct phantom_set_copy *copy)
 {
 	const struct phantom_set *header = &copy->header;
 	u32 effects = 0;
@@ -121,8 +166,5 @@ int phantom_set_check_arrays(const struct phantom_set_copy *copy)
 			if (copy->objects[j].object == copy->objects[i].object)
 				return -EINVAL;
 	}
-	for (i = 0; i < header->patch_count; i++)
-		if (!phantom_check_patch(&copy->patches[i], header))
-			return -EINVAL;
-	return 0;
+	return phantom_check_patches(copy) ? 0 : -EINVAL;
 }

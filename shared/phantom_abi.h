@@ -96,7 +96,9 @@
  *                          than the last one since open(), unknown flag, effect or kind, effects
  *                          that are not the union of the materials', damping without its effect,
  *                          a normal that is not of unit length to 2^-10, a pose that is not the
- *                          identity (v1), an object number twice, reserved not zero, radius 0 in
+ *                          identity (v1), a face after a fan patch, a fan whose corners do
+ *                          not coincide as its kind says, or that has a face number or
+ *                          neighbours, a neighbour that is no face, an object number twice, reserved not zero, radius 0 in
  *                          a material, vertices or centre beyond +-1 m of the origin, the origin
  *                          beyond PHANTOM_POSITION_MAX_NM
  *                 ENOMEM   no memory (the first sets after open or a change of arithmetic only;
@@ -152,6 +154,7 @@
 #define PHANTOM_FEATURE_ARITH_DOUBLE (1ULL << 6) /* user mode only */
 #define PHANTOM_FEATURE_MOVING_OBJECTS (1ULL << 7)
 #define PHANTOM_FEATURE_SIM_MOVE (1ULL << 8)
+#define PHANTOM_FEATURE_FANS (1ULL << 9) /* patches of kind EDGE and CORNER */
 
 /* ---- effects (material.effects, set.effects) ----------------------------- */
 #define PHANTOM_EFFECT_DAMPING (1U << 0) /* normal damping; never pulls */
@@ -258,6 +261,13 @@ struct phantom_start {
  */
 #define PHANTOM_PATCH_NONE 0xffffffffU /* no neighbour in this set */
 #define PHANTOM_PATCH_FACE 0 /* a face of the mesh */
+/*
+ * Where neighbours disagree about the normals of what they share, their shells leave a gap. A fan
+ * patch fills it: a triangle without area whose corners have different normals. In a set they
+ * follow all faces; their face number and neighbours are PHANTOM_PATCH_NONE.
+ */
+#define PHANTOM_PATCH_EDGE 1 /* fan over an edge: two of the corners are the same point */
+#define PHANTOM_PATCH_CORNER 2 /* fan over a vertex: all three are */
 struct phantom_patch {
 	__s32 vertex_nm[3][3]; /* [corner][axis], relative to the set's origin */
 	__s32 normal_q30[3][3]; /* [corner][axis], unit */
@@ -266,7 +276,7 @@ struct phantom_patch {
 	__u32 neighbour[3]; /* index in this set over edge i (corner i to i+1), or NONE */
 	__u32 object; /* index into the set's objects */
 	__u32 material; /* index into the set's materials */
-	__u32 kind; /* PHANTOM_PATCH_FACE */
+	__u32 kind; /* PHANTOM_PATCH_... */
 	__u32 reserved[2];
 };
 

@@ -53,6 +53,8 @@ struct block {
 	real_row area; /* |A0|, twice the area, mm^2 */
 	struct row3 area1, area2; /* A1 / |A0|, A2 / |A0| */
 	real_row normal_area0, normal_area1, normal_area2; /* m0 . A0, A1, A2, each / |A0| */
+	/* fans: 1 over an edge (x1 = x2), 2 over a vertex; A0 is A1 or A2 there. See projected.h */
+	real_row order;
 	real_row height_limit; /* no contact has a larger h */
 
 	index_row face; /* phantom_patch.face */
@@ -101,7 +103,8 @@ union scratch {
 
 struct phantom_float_set {
 	u32 patch_count;
-	u32 block_count;
+	u32 block_count; /* of faces */
+	u32 fan_block_count; /* they follow; only the shell has a use for them */
 	u32 material_count;
 	u32 refused;
 	u64 scratch_offset; /* from the set's begin, bytes: union scratch [block_count] */

@@ -38,6 +38,7 @@ struct phantom_float_prepare {
 	const struct phantom_patch *patches; /* the whole array */
 	const struct phantom_material *materials;
 	u32 patch_count;
+	u32 face_count; /* the first of them; fans (PHANTOM_PATCH_EDGE, _CORNER) follow */
 	u32 material_count;
 	u32 first; /* this piece: patches first ... first + count - 1; first is a multiple of 8 */
 	u32 count; /* <= PHANTOM_FLOAT_PREPARE_MAX */

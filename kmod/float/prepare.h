@@ -19,6 +19,13 @@ struct double3 {
  */
 #define SLIVER_HEIGHT_NM 16.0
 
+/*
+ * A fan with less between its normals is too narrow to have a shell: over an edge, radians; over a
+ * vertex, their square. What is left open at R is below a nm.
+ */
+#define FAN_EDGE_MIN 1e-8
+#define FAN_CORNER_MIN 1e-14
+
 /* Least |N| that is reckoned with: h <= R / |N| (normals of a patch more than 160 degrees apart). */
 #define NORMAL_LENGTH_MIN 0.15
 
@@ -65,8 +72,14 @@ struct patch_geometry {
 	struct double3 normal[3]; /* m */
 	struct double3 edge[3]; /* e_i = x_(i+1) - x_i */
 	double length2[3]; /* |e_i|^2 */
-	struct double3 face_normal; /* g */
-	double area2; /* |A0| = twice the area, mm^2 */
+	/*
+	 * A(h) of projected.h from its first term that does not vanish on: h^order lead size, then
+	 * the terms after it, divided by size. A face has order 0, lead = g and size = |A0|, twice
+	 * its area in mm^2.
+	 */
+	u32 order;
+	double size;
+	struct double3 lead, area1, area2;
 };
 
 static inline struct double3 edge_nm(const struct phantom_patch *patch, u32 from, u32 to)
@@ -93,11 +106,9 @@ static inline struct double3 cross_nm2(const struct phantom_patch *patch)
 				(double)(a[0] * b[1] - a[1] * b[0])};
 }
 
-/* False where the patch has no trustworthy plane. */
-static inline bool patch_measure(const struct phantom_patch *patch, struct patch_geometry *out)
+/* Normals and edges; returns the square of the longest edge, nm^2. */
+static inline double patch_corners(const struct phantom_patch *patch, struct patch_geometry *out)
 {
-	struct double3 cross = cross_nm2(patch);
-	double area2_nm2 = double_sqrt(double3_dot(cross, cross));
 	double longest2_nm2 = 0;
 	u32 i;
 
@@ -114,12 +125,65 @@ static inline bool patch_measure(const struct phantom_patch *patch, struct patch
 						  m[1] * (1.0 / PHANTOM_Q30_ONE),
 						  m[2] * (1.0 / PHANTOM_Q30_ONE)};
 	}
-	/* height over the longest edge = area2 / that edge */
-	if (area2_nm2 * area2_nm2 < SLIVER_HEIGHT_NM * SLIVER_HEIGHT_NM * longest2_nm2 ||
-	    !(area2_nm2 > 0))
+	return longest2_nm2;
+}
+
+/* A1 and A2 of A(h). */
+static inline void patch_turns(const struct patch_geometry *p, struct double3 *area1,
+			       struct double3 *area2)
+{
+	struct double3 e1 = p->edge[0], e2 = double3_scale(p->edge[2], -1);
+	struct double3 f1 = double3_sub(p->normal[1], p->normal[0]);
+	struct double3 f2 = double3_sub(p->normal[2], p->normal[0]);
+
+	*area1 = double3_add(double3_cross(e1, f2), double3_cross(f1, e2));
+	*area2 = double3_cross(f1, f2);
+}
+
+/* False where the face has no trustworthy plane. */
+static inline bool face_measure(const struct phantom_patch *patch, struct patch_geometry *out)
+{
+	struct double3 cross = cross_nm2(patch), area1, area2;
+	double size_nm2 = double_sqrt(double3_dot(cross, cross));
+	double longest2_nm2 = patch_corners(patch, out);
+
+	/* height over the longest edge = size / that edge */
+	if (size_nm2 * size_nm2 < SLIVER_HEIGHT_NM * SLIVER_HEIGHT_NM * longest2_nm2 ||
+	    !(size_nm2 > 0))
 		return false;
-	out->area2 = area2_nm2 * 1e-12;
-	out->face_normal = double3_scale(cross, 1 / area2_nm2);
+	patch_turns(out, &area1, &area2);
+	out->order = 0;
+	out->size = size_nm2 * 1e-12;
+	out->lead = double3_scale(cross, 1 / size_nm2);
+	out->area1 = double3_scale(area1, 1 / out->size);
+	out->area2 = double3_scale(area2, 1 / out->size);
+	return true;
+}
+
+/* False where its normals are too near to one another for a shell. */
+static inline bool fan_measure(const struct phantom_patch *patch, struct patch_geometry *out)
+{
+	double longest_nm = double_sqrt(patch_corners(patch, out)), least;
+	struct double3 area1, area2;
+
+	patch_turns(out, &area1, &area2);
+	if (patch->kind == PHANTOM_PATCH_EDGE) {
+		out->order = 1;
+		out->lead = area1;
+		out->area1 = area2;
+		least = FAN_EDGE_MIN * longest_nm * 1e-6;
+	} else {
+		out->order = 2;
+		out->lead = area2;
+		out->area1 = (struct double3){0, 0, 0};
+		least = FAN_CORNER_MIN;
+	}
+	out->area2 = (struct double3){0, 0, 0};
+	out->size = double_sqrt(double3_dot(out->lead, out->lead));
+	if (!(out->size > least))
+		return false;
+	out->lead = double3_scale(out->lead, 1 / out->size);
+	out->area1 = double3_scale(out->area1, 1 / out->size);
 	return true;
 }
 
@@ -130,10 +194,12 @@ static inline void prepare_edges(struct block *block, u32 lane, const struct pat
 	for (i = 0; i < 3; i++) {
 		struct paper_edge *edge = &block->edge[i];
 		struct double3 along = double3_sub(p->normal[(i + 1) % 3], p->normal[i]);
-		double inverse_length = 1 / double_sqrt(p->length2[i]);
+		/* an edge that is a point: only a fan has one, and no use for the rest */
+		double length2 = p->length2[i] > 0 ? p->length2[i] : 1;
+		double inverse_length = 1 / double_sqrt(length2);
 
 		row3_set(&edge->along, lane, p->edge[i]);
-		row_set(edge->inverse_length2, lane, 1 / p->length2[i]);
+		row_set(edge->inverse_length2, lane, 1 / length2);
 		row3_set(&edge->normal, lane, p->normal[i]);
 		row3_set(&edge->normal_along, lane, along);
 		row3_set(&edge->wall, lane,
@@ -163,29 +229,21 @@ static inline double normal_length_min(const struct patch_geometry *p)
 static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p,
 				 double radius)
 {
-	struct double3 e1 = p->edge[0], e2 = double3_scale(p->edge[2], -1);
-	struct double3 f1 = double3_sub(p->normal[1], p->normal[0]);
-	struct double3 f2 = double3_sub(p->normal[2], p->normal[0]);
-	double scale = 1 / p->area2;
-	struct double3 area1 =
-		double3_scale(double3_add(double3_cross(e1, f2), double3_cross(f1, e2)), scale);
-	struct double3 area2 = double3_scale(double3_cross(f1, f2), scale);
-
-	row_set(block->area, lane, p->area2);
-	row3_set(&block->area1, lane, area1);
-	row3_set(&block->area2, lane, area2);
-	row_set(block->normal_area0, lane, double3_dot(p->normal[0], p->face_normal));
-	row_set(block->normal_area1, lane, double3_dot(p->normal[0], area1));
-	row_set(block->normal_area2, lane, double3_dot(p->normal[0], area2));
+	row3_set(&block->face_normal, lane, p->lead);
+	row_set(block->area, lane, p->size);
+	row_set(block->order, lane, p->order);
+	row3_set(&block->area1, lane, p->area1);
+	row3_set(&block->area2, lane, p->area2);
+	row_set(block->normal_area0, lane, double3_dot(p->normal[0], p->lead));
+	row_set(block->normal_area1, lane, double3_dot(p->normal[0], p->area1));
+	row_set(block->normal_area2, lane, double3_dot(p->normal[0], p->area2));
 	row_set(block->height_limit, lane, radius / normal_length_min(p));
 }
 
-static inline void prepare_patch(struct phantom_float_set *set, u32 index,
+static inline void prepare_patch(struct phantom_float_set *set, struct block *block, u32 lane,
 				 const struct phantom_patch *patch, const struct patch_geometry *p)
 {
-	struct block *block = &set->blocks[index / PHANTOM_BLOCK];
 	const struct float_material *material = &set->materials[patch->material];
-	u32 lane = index % PHANTOM_BLOCK;
 	/* x1 - x0 and x2 - x0 as seen from the centroid */
 	struct double3 e1 = p->edge[0], e2 = double3_scale(p->edge[2], -1);
 	struct double3 centre = double3_scale(double3_add(e1, e2), 1.0 / 3);
@@ -206,7 +264,6 @@ static inline void prepare_patch(struct phantom_float_set *set, u32 index,
 	extent = double_sqrt(extent2) * (1 + 1e-5) + 1e-5;
 	if (extent > set->extent)
 		set->extent = (real)extent;
-	row3_set(&block->face_normal, lane, p->face_normal);
 	row_set(block->radius, lane, material->radius);
 	row3_set(&block->centre, lane, centre);
 	row_set(block->extent, lane, extent);
@@ -219,7 +276,7 @@ static inline void prepare_patch(struct phantom_float_set *set, u32 index,
 static inline void prepare_idle(struct block *block, u32 lane)
 {
 	const struct double3 zero = {0, 0, 0};
-	struct patch_geometry p = {.area2 = 1};
+	struct patch_geometry p = {.size = 1};
 	u32 i, axis;
 
 	for (i = 0; i < 3; i++) {
@@ -228,8 +285,7 @@ static inline void prepare_idle(struct block *block, u32 lane)
 		for (axis = 0; axis < 3; axis++)
 			block->corner[i][axis][lane / PHANTOM_LANES][lane % PHANTOM_LANES] = 0;
 	}
-	p.face_normal = zero;
-	row3_set(&block->face_normal, lane, zero);
+	p.lead = p.area1 = p.area2 = zero;
 	row_set(block->radius, lane, -1);
 	row3_set(&block->centre, lane, zero);
 	row_set(block->extent, lane, -1e6);
@@ -238,15 +294,30 @@ static inline void prepare_idle(struct block *block, u32 lane)
 	prepare_shell(block, lane, &p, -1);
 }
 
+static inline u32 blocks_for(u32 patch_count)
+{
+	return (patch_count + PHANTOM_BLOCK - 1) / PHANTOM_BLOCK;
+}
+
+/* Fans begin a block of their own. */
+static inline u32 lane_of_patch(const struct phantom_float_prepare *prepare, u32 index)
+{
+	u32 faces = prepare->face_count;
+
+	return index < faces ? index : index - faces + blocks_for(faces) * PHANTOM_BLOCK;
+}
+
 static inline void prepare_header(const struct phantom_float_prepare *prepare)
 {
 	struct phantom_float_set *set = prepare->set;
 	u32 i;
 
 	set->patch_count = prepare->patch_count;
-	set->block_count = (prepare->patch_count + PHANTOM_BLOCK - 1) / PHANTOM_BLOCK;
+	set->block_count = blocks_for(prepare->face_count);
+	set->fan_block_count = blocks_for(prepare->patch_count - prepare->face_count);
 	set->material_count = prepare->material_count;
-	set->scratch_offset = sizeof(*set) + (u64)set->block_count * sizeof(struct block);
+	set->scratch_offset = sizeof(*set) +
+			      (u64)(set->block_count + set->fan_block_count) * sizeof(struct block);
 	set->extent = 0;
 	set->radius = 0;
 	for (i = 0; i < prepare->material_count; i++) {
@@ -262,33 +333,64 @@ static inline void prepare_header(const struct phantom_float_prepare *prepare)
 	}
 }
 
-static void section_prepare(struct phantom_float_prepare *prepare)
+/* The same fan over an edge, begun with the corner that stands alone: x1 = x2. */
+static inline void turn_edge_fan(const struct phantom_patch *patch, struct phantom_patch *out)
 {
-	struct phantom_float_set *set = prepare->set;
-	u32 index, end = prepare->first + prepare->count, i;
+	u32 alone = 0, i, axis;
 
-	if (prepare->first == 0)
-		prepare_header(prepare);
-	for (index = prepare->first; index < end; index++) {
-		const struct phantom_patch *patch = &prepare->patches[index];
-		struct block *block = &set->blocks[index / PHANTOM_BLOCK];
-		u32 lane = index % PHANTOM_BLOCK;
-		struct patch_geometry geometry;
+	for (i = 0; i < 3; i++) {
+		const s32 *a = patch->vertex_nm[(i + 1) % 3], *b = patch->vertex_nm[(i + 2) % 3];
 
-		block->face[lane] = patch->face;
-		block->material[lane] = patch->material;
-		for (i = 0; i < 3; i++)
-			block->vertex[i][lane] = patch->vertex[i];
-		if (patch_measure(patch, &geometry)) {
-			prepare_patch(set, index, patch, &geometry);
-		} else {
-			prepare_idle(block, lane);
-			prepare->refused++;
+		if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2])
+			alone = i;
+	}
+	*out = *patch;
+	for (i = 0; i < 3; i++) {
+		u32 from = (i + alone) % 3;
+
+		out->vertex[i] = patch->vertex[from];
+		for (axis = 0; axis < 3; axis++) {
+			out->vertex_nm[i][axis] = patch->vertex_nm[from][axis];
+			out->normal_q30[i][axis] = patch->normal_q30[from][axis];
 		}
 	}
-	for (; end == prepare->patch_count && index % PHANTOM_BLOCK; index++) {
-		struct block *block = &set->blocks[index / PHANTOM_BLOCK];
-		u32 lane = index % PHANTOM_BLOCK;
+}
+
+/* A patch, in the lane that is its own. */
+static inline void prepare_one(struct phantom_float_prepare *prepare, u32 index)
+{
+	struct phantom_float_set *set = prepare->set;
+	const struct phantom_patch *patch = &prepare->patches[index];
+	struct phantom_patch turned;
+	u32 at = lane_of_patch(prepare, index), lane = at % PHANTOM_BLOCK, i;
+	struct block *block = &set->blocks[at / PHANTOM_BLOCK];
+	struct patch_geometry geometry;
+
+	if (patch->kind == PHANTOM_PATCH_EDGE) {
+		turn_edge_fan(patch, &turned);
+		patch = &turned;
+	}
+	block->face[lane] = patch->face;
+	block->material[lane] = patch->material;
+	for (i = 0; i < 3; i++)
+		block->vertex[i][lane] = patch->vertex[i];
+	if (patch->kind == PHANTOM_PATCH_FACE ? face_measure(patch, &geometry)
+					      : fan_measure(patch, &geometry)) {
+		prepare_patch(set, block, lane, patch, &geometry);
+	} else {
+		prepare_idle(block, lane);
+		prepare->refused++;
+	}
+}
+
+/* The rest of the block in which lane `at` - 1 is the last one used. */
+static inline void prepare_padding(struct phantom_float_set *set, u32 at)
+{
+	u32 i;
+
+	for (; at % PHANTOM_BLOCK; at++) {
+		struct block *block = &set->blocks[at / PHANTOM_BLOCK];
+		u32 lane = at % PHANTOM_BLOCK;
 
 		prepare_idle(block, lane);
 		block->face[lane] = PHANTOM_PATCH_NONE;
@@ -298,9 +400,27 @@ static void section_prepare(struct phantom_float_prepare *prepare)
 	}
 }
 
+static void section_prepare(struct phantom_float_prepare *prepare)
+{
+	u32 index, end = prepare->first + prepare->count;
+
+	if (prepare->first == 0)
+		prepare_header(prepare);
+	for (index = prepare->first; index < end; index++)
+		prepare_one(prepare, index);
+	if (end == prepare->patch_count) {
+		u32 fans = prepare->patch_count - prepare->face_count;
+
+		prepare_padding(prepare->set, prepare->face_count);
+		prepare_padding(prepare->set,
+				blocks_for(prepare->face_count) * PHANTOM_BLOCK + fans);
+	}
+}
+
 static size_t section_set_bytes(u32 patch_count)
 {
-	size_t blocks = ((size_t)patch_count + PHANTOM_BLOCK - 1) / PHANTOM_BLOCK;
+	/* faces and fans each fill their last block up */
+	size_t blocks = (size_t)blocks_for(patch_count) + 1;
 	size_t bytes = sizeof(struct phantom_float_set) + blocks * sizeof(struct block) +
 		       blocks * sizeof(union scratch);
 

@@ -23,6 +23,15 @@
  * finds it in model.newton_steps steps: the accuracy knob. Elsewhere the interval is split at the
  * critical points and each part that changes sign is solved by Newton kept in its bracket.
  *
+ * Fans. Over an edge with two normals at an end, and over a vertex with three and more, the shell
+ * is that of a triangle whose corners coincide: A0 = 0, and over a vertex A1 = 0 too. Divided by h,
+ * or by h^2, A(h) has the same form with the terms moved up by one or two; so has c(h), and its root
+ * h = 0 is gone. What follows is the same code with `order` 1 or 2 in place of 0. There is no
+ * surface below: h <= 0 is no contact. (The paper's fig. 1: two empty triangles at a fake edge.)
+ * The two triangles over an edge are as narrow as h. Beyond the end where such a triangle has only
+ * one corner, its two long walls stay within rounding of one another, so a fourth wall stands
+ * across that end: (1 - b0) |e| from it.
+ *
  * Walls are soft. Rounding would let a tip on a common wall count twice or not at all, so a root
  * has the weight clamp((w_i + e) / 2e, 0, 1) for each wall, w_i the distance from the wall,
  *
@@ -45,8 +54,8 @@
 #define SOFT_WALL ((real)8)
 
 /*
- * Part of the distance within the offset triangle that is added to the distance from the wall: at
- * a fold A.N = 0, and without it a root would lie on every wall there, however far from it in b.
+ * The distance from a wall counts for at least that part of the distance within the offset triangle:
+ * at a fold A.N = 0, and without it a root would lie on every wall there, however far from it in b.
  */
 #define IN_PLANE ((real)1 / 32)
 
@@ -254,7 +263,7 @@ LANES_INLINE lanes soft_wall(lanes area, struct lanes3 normal, struct lanes3 edg
 
 /* Is the root in the shell, and what does it give? */
 LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct lanes3 q, lanes h,
-				   mask_lanes valid, mask_lanes split, real rounding,
+				   mask_lanes valid, mask_lanes split, real rounding, bool fan,
 				   struct shell_point *out)
 {
 	const lanes one = lanes_all(1);
@@ -274,16 +283,22 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 					h));
 	lanes size = block->area[step] * lanes3_dot(area, area);
 	lanes inverse, b0, b1, b2, turned, reach, length, radius = block->radius[step];
+	lanes power = one; /* h^order */
 	struct lanes3 n;
 	mask_lanes near_wall;
 
+	if (fan) {
+		power = lanes_select(block->order[step] > 1, h * h, h);
+		valid &= h > 0;
+		size *= power;
+	}
 	valid &= size > 0;
 	inverse = one / lanes_select(valid, size, one);
 	b1 = lanes3_dot(lanes3_cross(e2, w), area) * inverse;
 	b2 = lanes3_dot(lanes3_cross(e1, w), area) * inverse;
 	b0 = one - b1 - b2;
 	n = lanes3_sub(lanes3_add(m0, lanes3_scale(f1, b1)), lanes3_scale(f2, b2));
-	turned = lanes_abs(lanes3_dot(area, n)) * block->area[step];
+	turned = lanes_abs(lanes3_dot(area, n)) * block->area[step] * power;
 	/* |N x E_i| is at most the length of an offset edge */
 	reach = (2 * soft) * (block->extent[step] + h + soft);
 	valid &= (b0 * turned >= -reach) & (b1 * turned >= -reach) & (b2 * turned >= -reach);
@@ -308,19 +323,28 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 		valid & ((b0 * turned <= reach) | (b1 * turned <= reach) | (b2 * turned <= reach));
 	if (!mask_bits(near_wall))
 		return;
-	turned += lanes_sqrt(lanes3_dot(area, area)) * block->area[step] * IN_PLANE;
+	turned = lanes_max(turned, lanes_sqrt(lanes3_dot(area, area)) * block->area[step] * power *
+					   IN_PLANE);
 	out->weight = soft_wall(b2 * turned, n, e1, soft, &out->soft_walls) *
 		      soft_wall(b1 * turned, n, e2, soft, &out->soft_walls) *
 		      soft_wall(b0 * turned, n, lanes3_add(e1, e2), soft, &out->soft_walls);
 	/* a lane's result must not depend on who shares its step */
 	out->weight = lanes_select(near_wall, out->weight, one);
 	out->soft_walls = lanes_keep(near_wall, out->soft_walls);
+	if (fan) {
+		struct lanes3 along = row3_step(&block->edge[0].along, step);
+		lanes beyond = (one - b0) * lanes_sqrt(lanes3_dot(along, along));
+		lanes end = lanes_min(lanes_max((beyond + soft) * ((real)0.5 / soft), lanes_all(0)),
+				      one);
+
+		out->weight *= lanes_select(near_wall & (block->order[step] < 2), end, one);
+	}
 	out->accepted = valid & (out->weight > 0);
 }
 
 /* Appends the roots of a step to `list`, patch by patch; returns how many. */
 static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
-				 real rounding, u32 newton_steps, u32 first_patch,
+				 real rounding, u32 newton_steps, u32 first_patch, bool fan,
 				 struct projected_root *list)
 {
 	struct lanes3 q = from_corner(block, step, 0, tip);
@@ -338,7 +362,7 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
 	for (i = 0; i < rounds; i++) {
 		shell_evaluate(block, step, q, roots.h[i], roots.valid[i], roots.split, rounding,
-			       &point[i]);
+			       fan, &point[i]);
 		any |= mask_bits(point[i].accepted);
 	}
 	for (l = 0; any >> l; l++) {
@@ -446,21 +470,41 @@ static inline void projected_sum(const struct phantom_float_set *set,
 		out->damping = damping / forces;
 }
 
+/* The roots of blocks first ... first + blocks - 1, in their order; returns how many. */
+static inline u32 projected_roots(const struct phantom_float_set *set, u32 first, u32 blocks,
+				  const struct nm_point *tip, u32 newton_steps, bool fan,
+				  struct projected_root *list)
+{
+	real rounding = rounding_mm(set);
+	u32 count = 0, block, step;
+
+	for (block = first; block < first + blocks; block++)
+		for (step = 0; step < PHANTOM_STEPS; step++)
+			count += projected_step(
+				&set->blocks[block], step, tip, rounding, newton_steps,
+				block * PHANTOM_BLOCK + step * PHANTOM_LANES, fan, &list[count]);
+	return count;
+}
+
+/* The same for the fans. */
+static inline u32 projected_fans(const struct phantom_float_set *set, const struct nm_point *tip,
+				 u32 newton_steps, struct projected_root *list)
+{
+	return projected_roots(set, set->block_count, set->fan_block_count, tip, newton_steps, true,
+			       list);
+}
+
 static inline void contact_projected(const struct phantom_float_job *job, struct contact_force *out)
 {
 	const struct phantom_float_set *set = job->set;
 	struct projected_root *roots = scratch_projected(set);
 	struct nm_point tip = nm_point(job->tip_nm);
-	real rounding = rounding_mm(set);
-	u32 steps = job->model.newton_steps, soft = 0, count = 0, block, step, i;
+	u32 steps = job->model.newton_steps, soft = 0, count = 0, i;
 
 	if (steps > PHANTOM_NEWTON_STEPS_MAX)
 		steps = PHANTOM_NEWTON_STEPS_MAX;
-	for (block = 0; block < set->block_count; block++)
-		for (step = 0; step < PHANTOM_STEPS; step++)
-			count += projected_step(&set->blocks[block], step, &tip, rounding, steps,
-						block * PHANTOM_BLOCK + step * PHANTOM_LANES,
-						&roots[count]);
+	count = projected_roots(set, 0, set->block_count, &tip, steps, false, roots);
+	count += projected_fans(set, &tip, steps, &roots[count]);
 	if (!count)
 		return;
 	for (i = 0; i < count; i++)

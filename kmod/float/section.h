@@ -10,6 +10,7 @@
 #include "overlap.h"
 #include "combine.h"
 #include "projected.h"
+#include "paper_fans.h"
 #include "crossing.h"
 #include "penetration.h"
 #include "effects/damping.h"
@@ -21,8 +22,9 @@ static inline void contact_paper(const struct phantom_float_job *job, struct con
 	struct paper_step *steps = scratch_paper(set);
 	struct nm_point tip = nm_point(job->tip_nm);
 	struct columns columns = {0};
-	real rounding = rounding_mm(set), forces = 0, damping = 0;
-	u32 count = 0, block, step, i, l;
+	real rounding = rounding_mm(set), forces = 0, damping = 0, most;
+	struct real3 total;
+	u32 count = 0, fans = 0, block, step, i, l;
 
 	for (block = 0; block < set->block_count; block++) {
 		for (step = 0; step < PHANTOM_STEPS; step++) {
@@ -36,9 +38,11 @@ static inline void contact_paper(const struct phantom_float_job *job, struct con
 			count++;
 		}
 	}
-	if (!count)
+	if (set->fan_block_count)
+		fans = paper_fans(set, steps, count, &tip);
+	if (!count && !fans)
 		return;
-	out->contacts = overlap_remove(set, steps, count, out->contacts, &tip, job->tip_nm);
+	out->contacts = overlap_remove(set, steps, count, out->contacts, &tip, job->tip_nm) + fans;
 	for (i = 0; i < count; i++) {
 		struct paper_step *at = &steps[i];
 		const struct block *in = &set->blocks[at->block];
@@ -57,8 +61,20 @@ static inline void contact_paper(const struct phantom_float_job *job, struct con
 			damping += at->magnitude[l] * set->materials[in->material[lane]].damping;
 		}
 	}
-	out->force =
-		combine_paper(columns_total(&columns), columns_most(&columns), job->model.combine);
+	total = columns_total(&columns);
+	most = columns_most(&columns);
+	for (i = 0; i < fans; i++) {
+		const struct projected_root *at = &scratch_fans(set)[i];
+		const struct block *in = &set->blocks[at->patch / PHANTOM_BLOCK];
+		real magnitude = at->magnitude;
+
+		total = real3_add(total, real3_scale(at->normal, magnitude));
+		most = real_max(most, magnitude);
+		forces += magnitude;
+		damping +=
+			magnitude * set->materials[in->material[at->patch % PHANTOM_BLOCK]].damping;
+	}
+	out->force = combine_paper(total, most, job->model.combine);
 	if (forces > 0)
 		out->damping = damping / forces;
 	contact_direction(out);

@@ -64,6 +64,7 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
 {
     const auto count = static_cast<u32>(triangles.size());
     std::vector<phantom_patch> patches(count);
+    u32 faces = 0;
     for (u32 f = 0; f < count; ++f) {
         for (std::size_t i = 0; i < 3; ++i) {
             to_nm(triangles[f].corner[i], patches[f].vertex_nm[i]);
@@ -73,7 +74,13 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
                 patches[f].normal_q30[i][axis] =
                     static_cast<s32>(std::lround(triangles[f].normal[i][axis] * PHANTOM_Q30_ONE));
         }
-        patches[f].face = f;
+        const auto& x = triangles[f].corner;
+        const bool corner = x[0] == x[1] && x[1] == x[2];
+        patches[f].face = triangles[f].fan ? PHANTOM_PATCH_NONE : f;
+        patches[f].kind = !triangles[f].fan ? PHANTOM_PATCH_FACE
+                          : corner          ? PHANTOM_PATCH_CORNER
+                                            : PHANTOM_PATCH_EDGE;
+        faces += !triangles[f].fan;
     }
     const auto materials = materials_of(triangles, settings, patches);
     set_.reset(std::aligned_alloc(PHANTOM_FLOAT_SET_ALIGN, ops.set_bytes(count)));
@@ -84,6 +91,7 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
     prepare.patches = patches.data();
     prepare.materials = materials.data();
     prepare.patch_count = count;
+    prepare.face_count = faces;
     prepare.material_count = static_cast<u32>(materials.size());
     do {
         prepare.count = std::min<u32>(PHANTOM_FLOAT_PREPARE_MAX, count - prepare.first);

@@ -37,6 +37,7 @@ std::vector<const phantom_float_ops*> sections();
 
 class Contact {
   public:
+    /// Fans last.
     Contact(const phantom_float_ops& ops, const std::vector<reference::Triangle>& triangles,
             Settings settings);
 

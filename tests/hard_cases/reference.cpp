@@ -77,6 +77,16 @@ V normal(const Triangle& t, int i)
 {
     return of(t.normal[static_cast<std::size_t>(i % 3)]);
 }
+/// How often h divides A(h): 0 for a face; 1 for a fan of which two corners are the same point, 2 where all
+/// three are.
+int fan_order(const Triangle& t)
+{
+    if (!t.fan)
+        return 0;
+    const bool same01 = t.corner[0] == t.corner[1], same12 = t.corner[1] == t.corner[2];
+    const bool same20 = t.corner[2] == t.corner[0];
+    return same01 && same12 ? 2 : same01 || same12 || same20 ? 1 : 0;
+}
 V area_vector(const Triangle& t)
 {
     return cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
@@ -195,7 +205,8 @@ void remove_overlap(const std::vector<Triangle>& triangles, V tip, std::vector<C
 {
     for (Contact& a : contacts) {
         for (const Contact& b : contacts) {
-            if (&a == &b || shares_feature(triangles[a.face], triangles[b.face], a.foot))
+            if (&a == &b || triangles[b.face].fan ||
+                shares_feature(triangles[a.face], triangles[b.face], a.foot))
                 continue;
             const Real s = segment_meets(triangles[b.face], tip, a.foot);
             if (s > 1e-6 && s < 1 - 1e-6)
@@ -216,28 +227,6 @@ V combined(V sum, Real most, Combine rule)
     if (rule == Combine::bounded && l <= most)
         return sum;
     return (most / l) * sum;
-}
-
-Result paper_shell(const std::vector<Triangle>& triangles, const std::vector<std::size_t>& faces, V tip,
-                   Combine rule)
-{
-    Result result;
-    std::vector<Contact> contacts;
-    find_contacts(triangles, faces, tip, contacts, result);
-    remove_overlap(triangles, tip, contacts, result);
-    V sum;
-    Real most = 0;
-    for (const Contact& c : contacts) {
-        if (c.dropped) {
-            ++result.dropped;
-            continue;
-        }
-        sum = sum + c.force;
-        most = std::max(most, length(c.force));
-        ++result.contacts;
-    }
-    result.force = to_double(combined(sum, most, rule));
-    return result;
 }
 
 /// All real roots of c0 + c1 h + c2 h^2 + c3 h^3 in (0, limit), by bisection between the critical points.
@@ -272,8 +261,13 @@ struct ShellSum {
     Real bound = 0; // the largest k R involved
 };
 
-/// Adds one root of one patch: (b, h) solves P = sum b_i (x_i + h m_i).
-void add_root(const Triangle& t, V tip, Real h, ShellSum& shell, Result& result)
+/// The shell's point of a root, if it is in the shell.
+struct ShellPoint {
+    bool in_shell = false, folded = false;
+    V normal; // N
+};
+
+ShellPoint shell_point(const Triangle& t, V tip, Real h, Result& result)
 {
     std::array<V, 3> offset;
     for (int i = 0; i < 3; ++i)
@@ -281,7 +275,7 @@ void add_root(const Triangle& t, V tip, Real h, ShellSum& shell, Result& result)
     const V area = cross(offset[1] - offset[0], offset[2] - offset[0]);
     const Real size2 = dot(area, area);
     if (size2 == 0)
-        return;
+        return {};
     std::array<Real, 3> b;
     V n;
     Real least = 1e9;
@@ -296,42 +290,100 @@ void add_root(const Triangle& t, V tip, Real h, ShellSum& shell, Result& result)
     // A(h) = 0 solves the cubic as well; P is not in that triangle
     const V found = b[0] * offset[0] + b[1] * offset[1] + b[2] * offset[2];
     if (length(found - tip) > 1e-6)
-        return;
-    const Real height = h * length(n), radius = t.radius;
-    if (height < 2 * radius)
+        return {};
+    if (h * length(n) < 2 * Real(t.radius))
         tighten(result, least);
     if (least < 0)
+        return {};
+    return {true, dot(area, n) < 0, n};
+}
+
+/// The h of which P may be in the triangle's shell.
+std::vector<Real> shell_roots(const Triangle& t, V tip)
+{
+    const V e1 = corner(t, 1) - corner(t, 0), e2 = corner(t, 2) - corner(t, 0);
+    const V f1 = normal(t, 1) - normal(t, 0), f2 = normal(t, 2) - normal(t, 0);
+    const V q = tip - corner(t, 0), m0 = normal(t, 0);
+    const V a0 = cross(e1, e2), a1 = cross(e1, f2) + cross(f1, e2), a2 = cross(f1, f2);
+    const int order = fan_order(t);
+    if (order == 0 && !(length(a0) > 0))
+        return {};
+    std::array<Real, 4> c{dot(q, a0), dot(q, a1) - dot(m0, a0), dot(q, a2) - dot(m0, a1), -dot(m0, a2)};
+    // A fan: A0 = 0, over a vertex A1 = 0 as well. h = 0 solves the cubic and is no contact.
+    for (int i = 0; i < order; ++i)
+        c = {c[1], c[2], c[3], 0};
+    return cubic_roots(c, 1e3);
+}
+
+/// Adds one root of one patch: (b, h) solves P = sum b_i (x_i + h m_i).
+void add_root(const Triangle& t, V tip, Real h, ShellSum& shell, Result& result)
+{
+    const ShellPoint at = shell_point(t, tip, h, result);
+    if (!at.in_shell)
         return;
-    const bool folded = dot(area, n) < 0;
-    result.degree += folded ? -1 : 1;
+    const Real height = h * length(at.normal), radius = t.radius;
+    result.degree += at.folded ? -1 : 1;
     tighten(result, height);
     tighten(result, height - radius);
     if (!(height < radius))
         return;
     ++result.contacts;
-    result.folded += folded ? 1 : 0;
-    const Real signed_force = t.stiffness * (radius - height) * (folded ? -1 : 1);
-    shell.sum = shell.sum + signed_force * unit(n);
+    result.folded += at.folded ? 1 : 0;
+    const Real signed_force = t.stiffness * (radius - height) * (at.folded ? -1 : 1);
+    shell.sum = shell.sum + signed_force * unit(at.normal);
     shell.bound = std::max(shell.bound, Real(t.stiffness) * radius);
+}
+
+/// `paper` over edges and corners: D is the fan's own point, n its direction to the tip.
+void find_fan_contacts(const std::vector<Triangle>& triangles, const std::vector<std::size_t>& faces, V tip,
+                       std::vector<Contact>& out, Result& result)
+{
+    for (const std::size_t f : faces) {
+        const Triangle& t = triangles[f];
+        if (fan_order(t) == 0)
+            continue;
+        for (const Real h : shell_roots(t, tip)) {
+            const ShellPoint at = shell_point(t, tip, h, result);
+            const Real height = h * length(at.normal);
+            if (!at.in_shell || at.folded)
+                continue;
+            tighten(result, height - t.radius);
+            if (height < t.radius)
+                out.push_back({f, tip - h * at.normal, t.stiffness * (t.radius - height) * unit(at.normal)});
+        }
+    }
+}
+
+Result paper_shell(const std::vector<Triangle>& triangles, const std::vector<std::size_t>& faces, V tip,
+                   Combine rule)
+{
+    Result result;
+    std::vector<Contact> contacts;
+    find_contacts(triangles, faces, tip, contacts, result);
+    find_fan_contacts(triangles, faces, tip, contacts, result);
+    remove_overlap(triangles, tip, contacts, result);
+    V sum;
+    Real most = 0;
+    for (const Contact& c : contacts) {
+        if (c.dropped) {
+            ++result.dropped;
+            continue;
+        }
+        sum = sum + c.force;
+        most = std::max(most, length(c.force));
+        ++result.contacts;
+    }
+    result.force = to_double(combined(sum, most, rule));
+    return result;
 }
 
 Result projected_shell(const std::vector<Triangle>& triangles, const std::vector<std::size_t>& faces, V tip)
 {
     Result result;
     ShellSum shell;
-    for (const std::size_t f : faces) {
-        const Triangle& t = triangles[f];
-        const V e1 = corner(t, 1) - corner(t, 0), e2 = corner(t, 2) - corner(t, 0);
-        const V f1 = normal(t, 1) - normal(t, 0), f2 = normal(t, 2) - normal(t, 0);
-        const V q = tip - corner(t, 0), m0 = normal(t, 0);
-        const V a0 = cross(e1, e2), a1 = cross(e1, f2) + cross(f1, e2), a2 = cross(f1, f2);
-        if (!(length(a0) > 0))
-            continue;
-        const std::array<Real, 4> c{dot(q, a0), dot(q, a1) - dot(m0, a0), dot(q, a2) - dot(m0, a1),
-                                    -dot(m0, a2)};
-        for (const Real h : cubic_roots(c, 1e3))
-            add_root(t, tip, h, shell, result);
-    }
+    for (const std::size_t f : faces)
+        for (const Real h : shell_roots(triangles[f], tip))
+            add_root(triangles[f], tip, h, shell, result);
     const Real l = length(shell.sum);
     result.force = to_double(l > shell.bound ? (shell.bound / l) * shell.sum : shell.sum);
     return result;
@@ -389,6 +441,8 @@ std::vector<Reference::Crossing> Reference::crossings(const Vec3& from, const Ve
     const V a = of(from), b = of(to);
     for (const std::size_t f : near(from, static_cast<double>(length(b - a)))) {
         const Triangle& t = triangles_[f];
+        if (t.fan)
+            continue;
         const V area = area_vector(t);
         const Real begin = dot(area, a - corner(t, 0)), end = dot(area, b - corner(t, 0));
         if (outward ? !(begin <= 0 && end >= 0) : !(begin >= 0 && end < 0))

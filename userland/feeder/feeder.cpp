@@ -68,7 +68,7 @@ struct Feeder::Impl {
           tree(tree_),
           device(device_),
           options(options_),
-          builder(scene_),
+          builder(scene_, device_.info().patches_max),
           radius_mm(scene_.max_radius_mm()),
           budget(first_budget())
     {

@@ -34,12 +34,15 @@ struct FeedReport {
 };
 
 /// Turns hits into a set: world coordinates, origin = the centre, adjacency inside the set. Patches are
-/// ordered by object and face, whatever the order of the hits: the same triangles give the same bits.
+/// ordered by object and face, whatever the order of the hits: the same triangles give the same bits. The
+/// faces' fans follow them in the same order.
 class SetBuilder {
   public:
-    explicit SetBuilder(const scene::Scene& scene);
-    /// hits by ascending distance; centre in world mm; coverage in mm as the query gave it. Materials or
-    /// objects beyond what a set can carry cut it short: the coverage then ends at the first left out.
+    /// patches_max: what the device takes in a set; build_all() does not ask.
+    explicit SetBuilder(const scene::Scene& scene, std::uint32_t patches_max = PHANTOM_PATCHES_MAX);
+    /// hits by ascending distance; centre in world mm; coverage in mm as the query gave it. Patches,
+    /// materials or objects beyond what a set can carry cut it short: the coverage then ends at the first
+    /// left out.
     void build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm, double coverage_mm,
                device::PatchSet& out);
     /// Every triangle of the scene, covering everything. centre in world mm.
@@ -52,10 +55,13 @@ class SetBuilder {
     /// Forgets the numbers that claim() gave for these faces.
     void release(const std::vector<std::array<std::uint32_t, 2>>& faces);
     void fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out);
+    void add_fans(std::uint32_t object, std::uint32_t face, const std::array<std::int64_t, 3>& origin_nm,
+                  device::PatchSet& out) const;
     phantom_patch patch(std::uint32_t object, std::uint32_t face,
                         const std::array<std::int64_t, 3>& origin_nm) const;
 
     const scene::Scene& scene_;
+    std::uint32_t patches_max_;
     std::vector<std::uint32_t> slot_;                 ///< scratch: face number to index in the set
     std::vector<std::uint32_t> material_slot_;        ///< scratch: scene material to index in the set
     std::vector<std::uint32_t> object_slot_;          ///< scratch: scene object to index in the set

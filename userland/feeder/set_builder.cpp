@@ -92,8 +92,9 @@ phantom_material material_of(const scene::Material& material)
 
 } // namespace
 
-SetBuilder::SetBuilder(const scene::Scene& scene)
+SetBuilder::SetBuilder(const scene::Scene& scene, std::uint32_t patches_max)
     : scene_(scene),
+      patches_max_(patches_max),
       slot_(scene.triangles(), no_slot),
       material_slot_(scene.materials.size(), no_slot),
       object_slot_(scene.objects.size(), no_slot)
@@ -157,6 +158,33 @@ phantom_patch SetBuilder::patch(std::uint32_t object, std::uint32_t face,
     return out;
 }
 
+void SetBuilder::add_fans(std::uint32_t object, std::uint32_t face,
+                          const std::array<std::int64_t, 3>& origin_nm, device::PatchSet& out) const
+{
+    const scene::Object& owner = scene_.objects[object];
+    for (const mesh::Fan& fan : owner.fans.of(face)) {
+        phantom_patch entry{};
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vector at = to_world(owner.pose, owner.mesh.vertices[fan.corners[corner]]);
+            for (int axis = 0; axis < 3; ++axis)
+                entry.vertex_nm[corner][axis] = static_cast<__s32>(to_nm(at[axis]) - origin_nm[axis]);
+            const Vector normal = rotate(owner.pose, fan.normals[corner]);
+            store_normal(normal, normal, entry.normal_q30[corner]);
+            entry.vertex[corner] = owner.first_vertex + fan.corners[corner];
+            entry.neighbour[corner] = PHANTOM_PATCH_NONE;
+        }
+        entry.face = PHANTOM_PATCH_NONE;
+        entry.object = object_slot_[object];
+        entry.material = material_slot_[owner.material];
+        entry.kind = fan.over_vertex() ? PHANTOM_PATCH_CORNER : PHANTOM_PATCH_EDGE;
+        // An edge shorter than a nm is a point to the servo, and no fan.
+        const auto& x = entry.vertex_nm;
+        const bool point = std::equal(x[0], x[0] + 3, x[1]) && std::equal(x[1], x[1] + 3, x[2]);
+        if (fan.over_vertex() || !point)
+            out.patches.push_back(entry);
+    }
+}
+
 void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out)
 {
     const std::array<std::int64_t, 3> origin_nm = {out.header.origin_nm[0], out.header.origin_nm[1],
@@ -167,6 +195,8 @@ void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, de
         slot_[entry.face] = static_cast<std::uint32_t>(out.patches.size());
         out.patches.push_back(entry);
     }
+    for (const auto& [object, face] : faces)
+        add_fans(object, face, origin_nm, out);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const scene::Object& owner = scene_.objects[faces[i][0]];
         const mesh::Triple& neighbours = owner.mesh.neighbours[faces[i][1]];
@@ -178,8 +208,8 @@ void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, de
         }
     }
     // Scratch is cleared entry by entry: a set is small, the scene may be large.
-    for (const phantom_patch& entry : out.patches)
-        slot_[entry.face] = no_slot;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        slot_[out.patches[i].face] = no_slot;
     release(faces);
 }
 
@@ -198,8 +228,10 @@ void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<doubl
     faces_.clear();
     for (const fdh::Hit& hit : hits)
         faces_.push_back({hit.object, hit.triangle});
+    std::size_t patches = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (!claim(hits[i].object, out)) {
+        patches += 1 + scene_.objects[hits[i].object].fans.of(hits[i].triangle).size();
+        if (patches > patches_max_ || !claim(hits[i].object, out)) {
             coverage_mm = std::min(coverage_mm, hits[i].distance);
             faces_.resize(i);
             break;

@@ -81,6 +81,7 @@ Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, cons
     object.name = entry.name;
     object.file = entry.mesh;
     object.mesh = std::move(prepared->mesh);
+    object.fans = mesh::make_fans(object.mesh);
     object.report = std::move(prepared->report);
     object.pose = entry.pose;
     object.material = entry.material;

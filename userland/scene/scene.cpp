@@ -13,6 +13,14 @@ std::uint64_t Scene::triangles() const
     return sum;
 }
 
+std::uint64_t Scene::patches() const
+{
+    std::uint64_t sum = triangles();
+    for (const Object& object : objects)
+        sum += object.fans.fans.size();
+    return sum;
+}
+
 mesh::Bounds Scene::bounds() const
 {
     std::vector<mesh::Vec3> world;

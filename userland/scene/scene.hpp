@@ -11,6 +11,7 @@
 
 #include "base/result.hpp"
 #include "fdh/scene_tree.hpp"
+#include "mesh/fans.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/prepare.hpp"
 
@@ -27,6 +28,7 @@ struct Object {
     std::string name;
     std::filesystem::path file;
     mesh::Mesh mesh; ///< object frame, mm
+    mesh::Fans fans; ///< of the mesh's creases
     mesh::Report report;
     fdh::Pose pose;
     std::uint32_t material = 0;                     ///< index into Scene::materials
@@ -53,6 +55,8 @@ struct Scene {
     ServoSettings servo;
 
     [[nodiscard]] std::uint64_t triangles() const;
+    /// Patches of a set that holds everything: triangles, and the fans of their creases.
+    [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
     [[nodiscard]] double max_radius_mm() const;
     /// Names of the effects that some material calls for ("damping"), and of those that none does.

@@ -86,7 +86,7 @@ class Tracer {
     /// 0 = what the module takes by itself.
     std::uint32_t patches_max() const
     {
-        const std::uint64_t wanted = options_.feeder.all ? scene_.triangles() : options_.feeder.budget;
+        const std::uint64_t wanted = options_.feeder.all ? scene_.patches() : options_.feeder.budget;
         return wanted > PHANTOM_PATCHES_MAX ? static_cast<std::uint32_t>(wanted) : 0;
     }
 
