@@ -193,6 +193,22 @@ TEST_P(BadSets, IsEINVALAndChangesNothing)
     EXPECT_EQ(feeder.submit(next), 0) << "the refused set's id is still free";
 }
 
+/// A fan over the first edge of the first patch, or over its end; well made.
+phantom_patch& add_fan(Plane& plane, std::uint32_t kind = PHANTOM_PATCH_EDGE)
+{
+    phantom_patch fan = plane.patches[0];
+    fan.kind = kind;
+    fan.face = PHANTOM_PATCH_NONE;
+    for (int corner = 0; corner < 3; ++corner)
+        fan.neighbour[corner] = PHANTOM_PATCH_NONE;
+    for (int corner = kind == PHANTOM_PATCH_EDGE ? 2 : 1; corner < 3; ++corner) {
+        std::copy_n(fan.vertex_nm[0], 3, fan.vertex_nm[corner]);
+        fan.vertex[corner] = fan.vertex[0];
+    }
+    plane.patches.push_back(fan);
+    return plane.patches.back();
+}
+
 const BadSet bad_sets[] = {
     {"id 0", {}, [](phantom_set& s) { s.id = 0; }},
     {"id of the last set", {}, [](phantom_set& s) { s.id = 1; }},
@@ -225,7 +241,22 @@ const BadSet bad_sets[] = {
     {"neighbour out of range", [](Plane& p) { p.patches[0].neighbour[1] = 2; }},
     {"object out of range", [](Plane& p) { p.patches[1].object = 1; }},
     {"material out of range", [](Plane& p) { p.patches[1].material = 1; }},
-    {"unknown kind", [](Plane& p) { p.patches[1].kind = 1; }},
+    {"unknown kind", [](Plane& p) { p.patches[1].kind = PHANTOM_PATCH_CORNER + 1; }},
+    {"edge with three points", [](Plane& p) { add_fan(p).vertex_nm[2][1] += 1; }},
+    {"edge that is a point", [](Plane& p) { add_fan(p, PHANTOM_PATCH_CORNER).kind = PHANTOM_PATCH_EDGE; }},
+    {"corner that is an edge", [](Plane& p) { add_fan(p).kind = PHANTOM_PATCH_CORNER; }},
+    {"fan with a face number", [](Plane& p) { add_fan(p).face = 7; }},
+    {"fan with a neighbour", [](Plane& p) { add_fan(p).neighbour[0] = 0; }},
+    {"fan as a neighbour",
+     [](Plane& p) {
+         add_fan(p);
+         p.patches[0].neighbour[0] = 2;
+     }},
+    {"face after a fan",
+     [](Plane& p) {
+         add_fan(p);
+         p.patches.push_back(p.patches[0]);
+     }},
     {"patch reserved 0", [](Plane& p) { p.patches[1].reserved[0] = 1; }},
     {"patch reserved 1", [](Plane& p) { p.patches[1].reserved[1] = 1; }},
     {"radius 0", [](Plane& p) { p.materials[0].radius_nm = 0; }},
@@ -262,6 +293,15 @@ TEST_F(Errors, LimitsThemselvesAreAccepted)
     for (std::uint32_t i = 0; i < plane.objects.size(); ++i)
         plane.objects[i].object = i;
     plane.patches.resize(PHANTOM_PATCHES_MAX, plane.patches[0]);
+    EXPECT_EQ(feeder.submit(plane), 0);
+}
+
+TEST_F(Errors, FansAfterTheFacesAreAccepted)
+{
+    File feeder(machine);
+    Plane plane(1);
+    add_fan(plane);
+    add_fan(plane, PHANTOM_PATCH_CORNER);
     EXPECT_EQ(feeder.submit(plane), 0);
 }
 

@@ -116,14 +116,21 @@ void add_edge_fans(const Mesh& mesh, const Edge& e, std::vector<Fan>& out)
     }
 }
 
+/// What stands round a vertex.
+struct Round {
+    std::vector<Vec3> normals;
+    Vec3 outward{0, 0, 0}; ///< away from the neighbouring vertices, summed
+};
+
 /// The normals round a vertex, counter-clockwise seen from outside, each once; the corner that is walked from
 /// has to be the lowest face of its round. Empty where the round is open, or another face is lower.
-std::vector<Vec3> normals_round(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex)
+Round round_of(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex)
 {
-    std::vector<Vec3> round;
-    const auto append = [&round](const Vec3& normal) {
-        if (round.empty() || differ(round.back(), normal))
-            round.push_back(normal);
+    Round round;
+    std::vector<Vec3>& normals = round.normals;
+    const auto append = [&normals](const Vec3& normal) {
+        if (normals.empty() || differ(normals.back(), normal))
+            normals.push_back(normal);
     };
     std::uint32_t at = face;
     do {
@@ -133,37 +140,50 @@ std::vector<Vec3> normals_round(const Mesh& mesh, std::uint32_t face, std::uint3
         if (next == no_neighbour || next < face)
             return {};
         append(normal_at(mesh, at, vertex));
+        round.outward = add(round.outward,
+                            normalized(subtract(mesh.vertices[vertex], mesh.vertices[mesh.faces[at][in]])));
         const Arcs arcs = arcs_of(mesh, {at, in});
         for (const Vec3& normal : arcs.at_second)
             append(normal);
         at = next;
     } while (at != face);
-    while (round.size() > 1 && !differ(round.front(), round.back()))
-        round.pop_back();
+    while (normals.size() > 1 && !differ(normals.front(), normals.back()))
+        normals.pop_back();
     return round;
 }
 
+/// A direction in the middle of the polygon: that of its summed normals, at a needle's tip (they cancel) that
+/// of the needle. Zero where both cancel.
+Vec3 middle_of(const Round& round)
+{
+    Vec3 sum{0, 0, 0};
+    for (const Vec3& normal : round.normals)
+        sum = add(sum, normal);
+    const double least = cancelled * static_cast<double>(round.normals.size());
+    if (length(sum) > least)
+        return normalized(sum);
+    return length(round.outward) > least ? normalized(round.outward) : Vec3{0, 0, 0};
+}
+
 /// A polygon of directions becomes triangles: one if it is small, else round its middle.
-void add_corner_fans(const std::vector<Vec3>& round, std::uint32_t vertex, std::vector<Fan>& out)
+void add_corner_fans(const Round& round, std::uint32_t vertex, std::vector<Fan>& out)
 {
     const Triple corners{vertex, vertex, vertex};
-    if (round.size() < 3)
+    const std::vector<Vec3>& normals = round.normals;
+    if (normals.size() < 3)
         return;
-    Vec3 sum{0, 0, 0};
+    const std::size_t count = normals.size();
     double widest = 0;
-    for (std::size_t i = 0; i < round.size(); ++i) {
-        sum = add(sum, round[i]);
-        widest = std::max(widest, angle_between(round[i], round[(i + 1) % round.size()]));
-    }
-    const bool pointed = length(sum) > cancelled * static_cast<double>(round.size());
-    if ((round.size() == 3 && widest <= arc_max) || !pointed) {
-        for (std::size_t i = 1; i + 1 < round.size(); ++i)
-            out.push_back({corners, {round[0], round[i], round[i + 1]}});
+    for (std::size_t i = 0; i < count; ++i)
+        widest = std::max(widest, angle_between(normals[i], normals[(i + 1) % count]));
+    const Vec3 middle = middle_of(round);
+    if ((count == 3 && widest <= arc_max) || middle == Vec3{0, 0, 0}) {
+        for (std::size_t i = 1; i + 1 < count; ++i)
+            out.push_back({corners, {normals[0], normals[i], normals[i + 1]}});
         return;
     }
-    const Vec3 middle = normalized(sum);
-    for (std::size_t i = 0; i < round.size(); ++i)
-        out.push_back({corners, {middle, round[i], round[(i + 1) % round.size()]}});
+    for (std::size_t i = 0; i < count; ++i)
+        out.push_back({corners, {middle, normals[i], normals[(i + 1) % count]}});
 }
 
 /// Whether a face has a crease at one of its edges at the vertex: most have none, and need no walk.
@@ -218,7 +238,7 @@ Fans make_fans(const Mesh& mesh)
             if (other != no_neighbour && f < other && (creased[a] || creased[b]))
                 add_edge_fans(mesh, {f, i}, result.fans);
             if (creased[a])
-                add_corner_fans(normals_round(mesh, f, a), a, result.fans);
+                add_corner_fans(round_of(mesh, f, a), a, result.fans);
         }
     }
     result.first.push_back(static_cast<std::uint32_t>(result.fans.size()));

@@ -246,6 +246,67 @@ TEST(SetBuilder, EverythingCoversEverything)
             EXPECT_NE(neighbour, PHANTOM_PATCH_NONE);
 }
 
+/// A box with face normals: two fans over each of 12 edges, one over each of 8 corners.
+scene::Scene creased_box()
+{
+    mesh::Soup soup;
+    for (int c = 0; c < 8; ++c)
+        soup.vertices.push_back({c & 1 ? 5.0 : -5.0, c & 2 ? 4.0 : -4.0, c & 4 ? 3.0 : -3.0});
+    soup.faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                  {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    auto prepared = mesh::prepare(std::move(soup), {}, "box");
+    scene::Scene scene;
+    scene.materials.push_back({});
+    add_object(scene, std::move(prepared->mesh), quarter_turn({100, 0, 0}), 0);
+    scene.objects[0].fans = mesh::make_fans(scene.objects[0].mesh);
+    return scene;
+}
+
+TEST(SetBuilder, FansFollowTheFacesTheyLieAt)
+{
+    const scene::Scene scene = creased_box();
+    feeder::SetBuilder builder(scene);
+    device::PatchSet set;
+    builder.build_all({100, 0, 0}, set);
+    ASSERT_EQ(set.patches.size(), 12U + 32U);
+    EXPECT_EQ(scene.patches(), set.patches.size());
+    std::array<int, 3> kinds{};
+    for (std::size_t i = 0; i < set.patches.size(); ++i) {
+        const phantom_patch& patch = set.patches[i];
+        ++kinds[patch.kind];
+        EXPECT_EQ(patch.kind == PHANTOM_PATCH_FACE, i < 12);
+        if (i < 12)
+            continue;
+        EXPECT_EQ(patch.face, PHANTOM_PATCH_NONE);
+        for (int corner = 0; corner < 3; ++corner) {
+            EXPECT_EQ(patch.neighbour[corner], PHANTOM_PATCH_NONE);
+            // turned with the object: the normals of a box lean to the side where their corner is
+            double lean = 0;
+            for (int axis = 0; axis < 3; ++axis)
+                lean += static_cast<double>(patch.normal_q30[corner][axis]) * patch.vertex_nm[corner][axis];
+            EXPECT_GT(lean, 0);
+        }
+    }
+    EXPECT_EQ(kinds, (std::array<int, 3>{12, 24, 8}));
+}
+
+TEST(SetBuilder, TooManyPatchesEndTheCoverageAtTheFirstFaceLeftOut)
+{
+    const scene::Scene scene = creased_box();
+    const fdh::SceneTree<14> tree = scene::build_tree<14>(scene);
+    feeder::SetBuilder builder(scene, 20);
+    fdh::Nearest near;
+    tree.nearest({107, 0, 0}, 12, 50.0, near);
+    device::PatchSet set;
+    builder.build(near.hits, {107, 0, 0}, near.coverage, set);
+    EXPECT_LE(set.patches.size(), 20U);
+    const auto faces = std::count_if(set.patches.begin(), set.patches.end(),
+                                     [](const phantom_patch& p) { return p.kind == PHANTOM_PATCH_FACE; });
+    ASSERT_LT(faces, 12);
+    ASSERT_GT(faces, 0);
+    EXPECT_LE(set.header.radius_nm * 1e-6, near.hits[static_cast<std::size_t>(faces)].distance);
+}
+
 TEST(CheckReach, RefusesATriangleThatNoSetCanCarryAndNamesTheRemedy)
 {
     scene::Scene scene;
