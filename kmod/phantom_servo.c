@@ -239,6 +239,7 @@ static void phantom_servo_sense(struct phantom_servo *servo, struct phantom_pass
 
 	if (error) {
 		phantom_safety_raise(safety, phantom_servo_device_fault(error));
+		pass->flags |= PHANTOM_TICK_UNREAD;
 		memcpy(pass->tip_nm, safety->tip_nm, sizeof(pass->tip_nm));
 		return;
 	}
@@ -258,16 +259,22 @@ static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *
 		servo->stats.next.fades++;
 	if (phantom_fade_blend(&servo->fade, pass->target_un, pass->now_ns, pass->target_un))
 		pass->flags |= PHANTOM_TICK_FADING;
-	if (xchg(&servo->clear_wanted, 0))
+	if (xchg(&servo->clear_wanted, 0)) {
 		phantom_safety_clear(safety);
+		pass->flags |= PHANTOM_TICK_CLEARED;
+	}
 	wish = xchg(&servo->stop_wanted, 0);
-	if (wish)
+	if (wish) {
 		phantom_safety_stop(safety, wish == PHANTOM_WISH_ABANDON);
+		pass->flags |= wish == PHANTOM_WISH_ABANDON ? PHANTOM_TICK_ABANDONED :
+							      PHANTOM_TICK_STOPPED;
+	}
 	pass->flags |= phantom_safety_apply(safety, pass->target_un, pass->elapsed_ns,
 					    pass->period_ns, pass->force_un);
 	error = servo->device->ops->write(servo->device, pass->force_un);
 	if (error) {
 		phantom_safety_raise(safety, phantom_servo_device_fault(error));
+		pass->flags |= PHANTOM_TICK_UNSENT;
 		memset(safety->force_un, 0, sizeof(safety->force_un));
 		memset(pass->force_un, 0, sizeof(pass->force_un));
 	}
@@ -284,12 +291,14 @@ static void phantom_servo_record(struct phantom_servo *servo, const struct phant
 	struct phantom_tick record = {
 		.tick = next->tick,
 		.time_ns = pass->now_ns,
-		.set_id = servo->reached ? next->set_id : 0,
+		.set_id = next->set_id,
 		.contacts = pass->contacts,
 		.flags = pass->flags,
 		.faults = servo->safety.faults,
 		.latency_ns = min_t(u64, latency_ns, U32_MAX),
 		.duration_ns = min_t(u64, duration_ns, U32_MAX),
+		.rate_hz = next->rate_hz,
+		.model = PHANTOM_TICK_MODEL(&servo->job.model),
 	};
 
 	memcpy(record.tip_nm, pass->tip_nm, sizeof(record.tip_nm));

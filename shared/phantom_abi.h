@@ -323,12 +323,18 @@ struct phantom_sim_move {
 #define PHANTOM_TICK_SLEWED (1U << 5) /* slew_un_per_ms held the force back */
 #define PHANTOM_TICK_RAMPING (1U << 6) /* START, STOP or CLEAR_FAULT is ramping */
 #define PHANTOM_TICK_SATURATED (1U << 7) /* a conversion saturated */
+/* What came to this tick from outside, so that it can be computed again from its record. */
+#define PHANTOM_TICK_STOPPED (1U << 8) /* it took STOP: the ramp goes down from here */
+#define PHANTOM_TICK_ABANDONED (1U << 9) /* it took the feeder's close or death */
+#define PHANTOM_TICK_CLEARED (1U << 10) /* it took CLEAR_FAULT */
+#define PHANTOM_TICK_UNREAD (1U << 11) /* the device gave no position: the tip is the last known */
+#define PHANTOM_TICK_UNSENT (1U << 12) /* the device did not take the force */
 
 /* One record of read(): one tick. */
 struct phantom_tick {
 	__u64 tick; /* number of its period, from 1; a gap = periods missed or records lost */
 	__u64 time_ns;
-	__u64 set_id; /* of the set the force came from; 0 = none */
+	__u64 set_id; /* of the set in use, whether it covers the tip or not; 0 = none */
 	__s64 tip_nm[3];
 	__s64 proxy_nm[3]; /* = tip outside the surface */
 	__s32 force_un[3]; /* as sent to the device */
@@ -337,7 +343,14 @@ struct phantom_tick {
 	__u32 faults; /* PHANTOM_FAULT_..., latched */
 	__u32 latency_ns; /* wake-up after the begin of the period that was waited for */
 	__u32 duration_ns; /* of the whole tick */
+	__u32 rate_hz; /* in force */
+	__u32 model; /* in force: PHANTOM_TICK_MODEL() */
 };
+
+/* struct phantom_model in one word, 4 bits a field. */
+#define PHANTOM_TICK_MODEL(m)                                                                      \
+	((m)->model | (m)->newton_steps << 4 | (m)->combine << 8 | (m)->proxy << 12 |              \
+	 (m)->arith << 16)
 
 /*
  * A histogram of durations: bucket b < 8 counts b ns; above, 8 buckets an octave:

@@ -74,6 +74,33 @@ int phantom_virtual_clock_step(struct phantom_virtual_clock *virtual, u32 ticks)
 	return done || !ticks ? (int)done : -EAGAIN;
 }
 
+void phantom_virtual_clock_set(struct phantom_virtual_clock *virtual, u64 now_ns)
+{
+	mutex_lock(&virtual->stepping);
+	WRITE_ONCE(virtual->now_ns, now_ns);
+	mutex_unlock(&virtual->stepping);
+}
+
+/* Periods that the other machine skipped before this one are counted as skipped here. */
+int phantom_virtual_clock_replay(struct phantom_virtual_clock *virtual, u64 tick, u64 now_ns,
+				 u64 due_ns)
+{
+	struct phantom_servo *servo;
+
+	mutex_lock(&virtual->stepping);
+	servo = virtual->servo;
+	if (servo) {
+		WRITE_ONCE(virtual->now_ns, now_ns);
+		servo->next_ns = due_ns;
+		servo->stats.next.missed += tick - 1 - servo->stats.next.tick;
+		servo->stats.next.tick = tick - 1;
+		if (!phantom_servo_step(servo))
+			virtual->servo = NULL;
+	}
+	mutex_unlock(&virtual->stepping);
+	return servo ? 1 : -EAGAIN;
+}
+
 static const struct phantom_clock_ops virtual_clock_ops = {
 	.now_ns = virtual_now,
 	.start = virtual_start,
