@@ -171,6 +171,8 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 	}
 	job->set = slot->floats;
 	job->effects = slot->effects;
+	memcpy(job->centre_nm, slot->centre_nm, sizeof(job->centre_nm));
+	job->radius_nm = slot->radius_nm;
 	for (axis = 0; axis < 3; axis++)
 		job->velocity_nm_s[axis] =
 			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
