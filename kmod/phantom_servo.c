@@ -22,10 +22,13 @@
  * felt coming. A fast tip may start its path outside the new set's coverage; a crossing that the
  * set does know is a crossing all the same.
  *
- * FLOAT SECTIONS run with preemption off: no sleeping lock, no allocation, no copy from user, no
- * print between begin and end, and nothing but float/ is called there.
+ * CONTEXT RULES stand in phantom_servo.h. Here: everything is the servo thread's but prepare(),
+ * which is a submitter's, and what says "run state". Float sections run with preemption off: no
+ * sleeping lock, no allocation, no copy from user, no print between begin and end, and nothing but
+ * float/ is called there.
  */
 #include <phantom_platform.h>
+#include "phantom_context.h"
 #include "phantom_servo.h"
 
 /* Readers of records are woken at most this often: at 10 kHz ten records cost one wake-up. */
@@ -45,8 +48,10 @@ static void phantom_servo_float_tick(struct phantom_servo *servo,
 	struct phantom_stats *stats = &servo->stats;
 	u64 begin, length;
 
+	phantom_context_servo(servo);
 	begin = phantom_servo_now(servo);
 	kernel_fpu_begin();
+	phantom_context_section();
 	ops->tick(&servo->job);
 	kernel_fpu_end();
 	length = phantom_servo_now(servo) - begin;
@@ -67,6 +72,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		.material_count = copy->header.material_count,
 	};
 
+	phantom_context_submitter(&servo->sets);
 	do {
 		u64 begin = phantom_servo_now(servo);
 		u64 length;
@@ -74,6 +80,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		prepare.count =
 			min_t(u32, slot->patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);
 		kernel_fpu_begin();
+		phantom_context_section();
 		slot->ops->prepare(&prepare);
 		kernel_fpu_end();
 		length = min_t(u64, phantom_servo_now(servo) - begin, U32_MAX);
@@ -88,6 +95,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 
 void phantom_servo_forget_touch(struct phantom_servo *servo)
 {
+	phantom_context_run(servo);
 	memset(&servo->touch, 0, sizeof(servo->touch));
 	servo->touch.proxy_face = PHANTOM_PATCH_NONE;
 }
@@ -268,8 +276,8 @@ static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *
 	wish = xchg(&servo->stop_wanted, 0);
 	if (wish) {
 		phantom_safety_stop(safety, wish == PHANTOM_WISH_ABANDON);
-		pass->flags |= wish == PHANTOM_WISH_ABANDON ? PHANTOM_TICK_ABANDONED :
-							      PHANTOM_TICK_STOPPED;
+		pass->flags |= wish == PHANTOM_WISH_ABANDON ? PHANTOM_TICK_ABANDONED
+							    : PHANTOM_TICK_STOPPED;
 	}
 	pass->flags |= phantom_safety_apply(safety, pass->target_un, pass->elapsed_ns,
 					    pass->period_ns, pass->force_un);
@@ -409,6 +417,7 @@ bool phantom_servo_step(struct phantom_servo *servo)
 	u64 now = phantom_servo_now(servo);
 	u64 skipped;
 
+	phantom_context_servo(servo);
 	next->rate_hz = rate_hz;
 	next->tick++;
 	phantom_servo_tick(servo, now, period);
@@ -429,20 +438,37 @@ void phantom_servo_set_clock(struct phantom_servo *servo)
 {
 	u64 now = phantom_servo_now(servo);
 
-	servo->stats.next.start_ns = now;
+	phantom_context_run(servo);
+	/* a run that goes on after the machine slept began when it began */
+	if (!servo->stats.next.tick)
+		servo->stats.next.start_ns = now;
 	servo->next_ns = now + NSEC_PER_SEC / READ_ONCE(servo->rate_hz);
 	servo->last_ns = now;
 	servo->woken_ns = now;
 	servo->reminded_ns = now;
 }
 
+void phantom_servo_enter(struct phantom_servo *servo)
+{
+	WRITE_ONCE(servo->thread, current);
+	phantom_context_servo(servo);
+}
+
+void phantom_servo_leave(struct phantom_servo *servo)
+{
+	WRITE_ONCE(servo->thread, NULL);
+}
+
 void phantom_servo_run(struct phantom_servo *servo)
 {
 	struct phantom_clock *clock = servo->clock;
 
+	lockdep_assert_not_held(&servo->control);
+	phantom_servo_enter(servo);
 	/* again: making this thread may have taken many periods, and none of them is a missed tick */
 	phantom_servo_set_clock(servo);
 	while (clock->ops->sleep_until(clock, servo->next_ns))
 		if (!phantom_servo_step(servo))
 			break;
+	phantom_servo_leave(servo);
 }

@@ -35,6 +35,11 @@
  *   FAULT    the tick still runs and reports, the force is zero. Latched: only
  *            CLEAR_FAULT, or STOP followed by CLEAR_FAULT, ends it.
  *
+ *   When the machine goes to sleep (suspend, hibernation) a run's force ramps down within
+ *   PHANTOM_FADE_NS, the device is switched off and PHANTOM_FAULT_SUSPENDED is latched; no tick
+ *   runs. When it wakes up the ticks go on without a missed one, in FAULT: nobody's arm jumps.
+ *   Steps of the wall clock change nothing: all times are CLOCK_MONOTONIC.
+ *
  * UNITS
  *   Everything is an integer in an SI unit; no float crosses this border.
  *     position, length   nm; __s32 relative to the set's origin, __s64 absolute
@@ -85,7 +90,7 @@
  *   SET_RATE      EINVAL   not within rate_min_hz ... rate_max_hz; reserved not zero
  *   SET_MODEL     EINVAL   unknown value, newton_steps > 3; reserved not zero
  *                 EOPNOTSUPP  a known value that info.features does not offer
- *   START         EBUSY    not IDLE
+ *   START         EBUSY    not IDLE, or the machine is about to sleep
  *                 EIO      a latched fault: CLEAR_FAULT first
  *                 EINVAL   a force above the device's, ramp_ms > PHANTOM_RAMP_MAX_MS, unknown
  *                          flag, reserved not zero
@@ -104,7 +109,7 @@
  *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
  *                 EINVAL   beyond PHANTOM_POSITION_MAX_NM, reserved not zero
- *   CLEAR_FAULT   EAGAIN   the cause is still there
+ *   CLEAR_FAULT   EAGAIN   the cause is still there (asleep counts)
  *                 (0 when no fault is latched; else the next tick clears, and ramps up)
  *   mmap          EPERM    writable or executable; EINVAL: offset not 0 or too long
  *   read          EINVAL   the buffer is smaller than one record
@@ -195,6 +200,7 @@
 #define PHANTOM_FAULT_STALL (1U << 2) /* a tick came later than start.stall_us */
 #define PHANTOM_FAULT_NUMERIC (1U << 3) /* a float section gave a value that is no number */
 #define PHANTOM_FAULT_UNPLUGGED (1U << 4)
+#define PHANTOM_FAULT_SUSPENDED (1U << 5) /* the machine went to sleep during the run */
 
 /* GET_INFO. Written by the module. */
 struct phantom_info {

@@ -35,16 +35,27 @@ static bool virtual_sleep_until(struct phantom_clock *clock, u64 deadline_ns)
 	return true;
 }
 
+/* One tick at the present time. Stepping held. False: the run is over. */
+static bool virtual_tick(struct phantom_virtual_clock *virtual)
+{
+	struct phantom_servo *servo = virtual->servo;
+	bool goes_on;
+
+	phantom_servo_enter(servo);
+	goes_on = phantom_servo_step(servo);
+	phantom_servo_leave(servo);
+	if (!goes_on)
+		virtual->servo = NULL;
+	return goes_on;
+}
+
 /* Stepping held. False: the run is over. */
 static bool virtual_step(struct phantom_virtual_clock *virtual)
 {
 	struct phantom_servo *servo = virtual->servo;
 
 	virtual_sleep_until(&virtual->clock, servo->next_ns);
-	if (phantom_servo_step(servo))
-		return true;
-	virtual->servo = NULL;
-	return false;
+	return virtual_tick(virtual);
 }
 
 /* Nobody else moves this clock on: the ramp is stepped here, as many ticks as the timeout has. */
@@ -94,8 +105,7 @@ int phantom_virtual_clock_replay(struct phantom_virtual_clock *virtual, u64 tick
 		servo->next_ns = due_ns;
 		servo->stats.next.missed += tick - 1 - servo->stats.next.tick;
 		servo->stats.next.tick = tick - 1;
-		if (!phantom_servo_step(servo))
-			virtual->servo = NULL;
+		virtual_tick(virtual);
 	}
 	mutex_unlock(&virtual->stepping);
 	return servo ? 1 : -EAGAIN;

@@ -80,6 +80,10 @@ struct phantom_um_thread_info {
 };
 void phantom_um_thread(const struct phantom_um *machine, struct phantom_um_thread_info *info);
 
+/* What the kernel's module does before the machine goes to sleep, and when it has woken up. */
+void phantom_um_suspend(struct phantom_um *machine);
+int phantom_um_resume(struct phantom_um *machine);
+
 /*
  * Tests only. The next tick comes that much later (either clock). The device answers every read
  * with that -errno until told 0; -ENODEV is an unplugged one. The nth allocation from now on in

@@ -164,7 +164,9 @@ static int um_init(struct phantom_um *machine, const struct phantom_um_config *c
 				   patches);
 	if (error)
 		goto no_servo;
+	mutex_lock(&machine->servo.control);
 	error = config->rate_hz ? phantom_servo_set_rate(&machine->servo, config->rate_hz) : 0;
+	mutex_unlock(&machine->servo.control);
 	if (error)
 		goto no_rate;
 	phantom_chardev_init(&machine->chardev, &machine->servo);
@@ -196,7 +198,6 @@ void phantom_um_destroy(struct phantom_um *machine)
 {
 	if (!machine)
 		return;
-	phantom_chardev_destroy(&machine->chardev);
 	phantom_platform_wait_destroy(&machine->servo.wait);
 	phantom_servo_destroy(&machine->servo);
 	um_clock_destroy(machine);
@@ -253,6 +254,23 @@ void phantom_um_thread(const struct phantom_um *machine, struct phantom_um_threa
 
 	info->fifo = real ? READ_ONCE(machine->clock.real.fifo) : 0;
 	info->cpu = real && machine->clock.real.cpu >= 0 ? machine->clock.real.cpu : -1;
+}
+
+void phantom_um_suspend(struct phantom_um *machine)
+{
+	mutex_lock(&machine->servo.control);
+	phantom_servo_suspend(&machine->servo);
+	mutex_unlock(&machine->servo.control);
+}
+
+int phantom_um_resume(struct phantom_um *machine)
+{
+	int error;
+
+	mutex_lock(&machine->servo.control);
+	error = phantom_servo_resume(&machine->servo);
+	mutex_unlock(&machine->servo.control);
+	return error;
 }
 
 void phantom_um_inject_stall(struct phantom_um *machine, uint64_t ns)
