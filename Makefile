@@ -42,7 +42,7 @@ vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 modules: ## build/modules/RELEASE/phantom_rt.ko for Debian's RT kernels, or KDIR=/path/to/headers
 	@tools/bootstrap modules
 	@$(if $(KDIR),,tools/kernel-headers)
-	@$(MAKE) --no-print-directory -C kmod modules $(if $(KDIR),KDIR=$(KDIR))
+	@$(MAKE) --no-print-directory -j $(JOBS) -C kmod modules $(if $(KDIR),KDIR=$(abspath $(KDIR)))
 
 install: all ## programs and scenes to PREFIX (/usr/local)
 	@cmake --install $(RELEASE) --prefix $(or $(PREFIX),/usr/local)

@@ -4,24 +4,21 @@
  */
 #include <phantom_platform.h>
 #include "phantom_chardev.h"
+#include "phantom_context.h"
 
 void phantom_chardev_init(struct phantom_chardev *chardev, struct phantom_servo *servo)
 {
 	chardev->servo = servo;
 	chardev->feeder = NULL;
-	mutex_init(&chardev->control);
-}
-
-void phantom_chardev_destroy(struct phantom_chardev *chardev)
-{
-	mutex_destroy(&chardev->control);
 }
 
 struct phantom_file *phantom_chardev_open(struct phantom_chardev *chardev, bool feeding)
 {
 	struct phantom_servo *servo = chardev->servo;
-	struct phantom_file *file = kzalloc(sizeof(*file), GFP_KERNEL);
+	struct phantom_file *file;
 
+	phantom_context_file(servo);
+	file = kzalloc(sizeof(*file), GFP_KERNEL);
 	if (!file)
 		return ERR_PTR(-ENOMEM);
 	mutex_init(&file->reading);
@@ -33,28 +30,29 @@ struct phantom_file *phantom_chardev_open(struct phantom_chardev *chardev, bool 
 	if (!feeding)
 		return file;
 
-	mutex_lock(&chardev->control);
+	mutex_lock(&servo->control);
 	if (chardev->feeder) {
-		mutex_unlock(&chardev->control);
+		mutex_unlock(&servo->control);
 		mutex_destroy(&file->reading);
 		kfree(file);
 		return ERR_PTR(-EBUSY);
 	}
 	chardev->feeder = file;
-	mutex_unlock(&chardev->control);
+	mutex_unlock(&servo->control);
 	return file;
 }
 
 void phantom_chardev_release(struct phantom_file *file)
 {
-	struct phantom_chardev *chardev = file->chardev;
+	struct phantom_servo *servo = file->chardev->servo;
 
+	phantom_context_file(servo);
 	if (file->feeding) {
-		mutex_lock(&chardev->control);
-		phantom_servo_stop(chardev->servo, PHANTOM_WISH_ABANDON);
-		phantom_servo_forget(chardev->servo);
-		chardev->feeder = NULL;
-		mutex_unlock(&chardev->control);
+		mutex_lock(&servo->control);
+		phantom_servo_stop(servo, PHANTOM_WISH_ABANDON);
+		phantom_servo_forget(servo);
+		file->chardev->feeder = NULL;
+		mutex_unlock(&servo->control);
 	}
 	mutex_destroy(&file->reading);
 	kfree(file);
@@ -136,7 +134,7 @@ static long phantom_chardev_submit_set(struct phantom_file *file, void __user *a
 	return phantom_servo_submit(servo, argument);
 }
 
-/* Without the control mutex: the tip moves on while STOP waits for the ramp. */
+/* Not as control: the tip moves on while STOP waits for the ramp. */
 static long phantom_chardev_sim_move(struct phantom_file *file, void __user *argument)
 {
 	struct phantom_device *device = file->chardev->servo->device;
@@ -168,7 +166,7 @@ static long phantom_chardev_clear_fault(struct phantom_file *file, void __user *
 static const struct phantom_chardev_command {
 	unsigned int number;
 	bool anyone; /* observers too */
-	bool control; /* under the control mutex */
+	bool control; /* called as "control" */
 	long (*call)(struct phantom_file *file, void __user *argument);
 } phantom_chardev_commands[] = {
 	{PHANTOM_GET_INFO, true, false, phantom_chardev_get_info},
@@ -176,18 +174,19 @@ static const struct phantom_chardev_command {
 	{PHANTOM_SET_MODEL, false, true, phantom_chardev_set_model},
 	{PHANTOM_START, false, true, phantom_chardev_start},
 	{PHANTOM_STOP, false, true, phantom_chardev_stop},
-	{PHANTOM_SUBMIT_SET, false, true, phantom_chardev_submit_set},
+	{PHANTOM_SUBMIT_SET, false, false, phantom_chardev_submit_set},
 	{PHANTOM_SIM_MOVE, false, false, phantom_chardev_sim_move},
 	{PHANTOM_CLEAR_FAULT, false, true, phantom_chardev_clear_fault},
 };
 
 long phantom_chardev_ioctl(struct phantom_file *file, unsigned int command, void __user *argument)
 {
-	struct phantom_chardev *chardev = file->chardev;
+	struct phantom_servo *servo = file->chardev->servo;
 	const struct phantom_chardev_command *entry;
 	long result;
 	size_t i;
 
+	phantom_context_file(servo);
 	for (i = 0; i < ARRAY_SIZE(phantom_chardev_commands); i++) {
 		entry = &phantom_chardev_commands[i];
 		if (entry->number != command)
@@ -196,9 +195,9 @@ long phantom_chardev_ioctl(struct phantom_file *file, unsigned int command, void
 			return -EBADF;
 		if (!entry->control)
 			return entry->call(file, argument);
-		mutex_lock(&chardev->control);
+		mutex_lock(&servo->control);
 		result = entry->call(file, argument);
-		mutex_unlock(&chardev->control);
+		mutex_unlock(&servo->control);
 		return result;
 	}
 	return -ENOTTY;
@@ -240,6 +239,7 @@ ssize_t phantom_chardev_read(struct phantom_file *file, char __user *buffer, siz
 	struct phantom_servo *servo = file->chardev->servo;
 	ssize_t done;
 
+	phantom_context_file(servo);
 	if (size < sizeof(struct phantom_tick))
 		return -EINVAL;
 	size = min_t(size_t, size, PHANTOM_RING_RECORDS * sizeof(struct phantom_tick));

@@ -3,9 +3,8 @@
  * phantom_chardev.h - the calls on /dev/phantom_rt0: checks, and nothing of what they ask for.
  *
  * phantom_node.c hangs these functions into a struct file_operations, the user-mode build into a
- * C API. Process context; errors as phantom_abi.h says.
- *
- * LOCKS, in this order: file->reading, chardev->control. The servo thread takes neither.
+ * C API. Context "file" of phantom_servo.h: process context, no mutex held; the table of commands
+ * says which are called as "control". Errors as phantom_abi.h says.
  */
 #ifndef PHANTOM_CHARDEV_H
 #define PHANTOM_CHARDEV_H
@@ -15,9 +14,7 @@
 
 struct phantom_chardev {
 	struct phantom_servo *servo; /* fixed */
-	/* Serialises what changes the servo; guards feeder and the submitter's side of the sets. */
-	struct mutex control;
-	struct phantom_file *feeder;
+	struct phantom_file *feeder; /* under servo->control */
 };
 
 struct phantom_file {
@@ -30,7 +27,6 @@ struct phantom_file {
 };
 
 void phantom_chardev_init(struct phantom_chardev *chardev, struct phantom_servo *servo);
-void phantom_chardev_destroy(struct phantom_chardev *chardev);
 
 struct phantom_file *phantom_chardev_open(struct phantom_chardev *chardev, bool feeding);
 /* The feeder's: ramps to zero, then forgets sets and contact. Sleeps. */

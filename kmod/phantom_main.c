@@ -5,6 +5,7 @@
 #include <phantom_platform.h>
 #include "device/phantom_device.h"
 #include "phantom_kernel.h"
+#include "phantom_power.h"
 
 static unsigned int rate_hz = 1000;
 module_param(rate_hz, uint, 0444);
@@ -27,6 +28,7 @@ static struct phantom_kernel_clock phantom_clock;
 static struct phantom_servo *phantom_servo;
 static struct phantom_chardev phantom_chardev;
 static struct phantom_node phantom_node;
+static struct phantom_power phantom_power;
 
 static int __init phantom_create_device(void)
 {
@@ -91,20 +93,25 @@ static int __init phantom_init(void)
 				   PHANTOM_PATCHES_MAX);
 	if (error)
 		goto no_servo;
+	mutex_lock(&phantom_servo->control);
 	error = phantom_servo_set_rate(phantom_servo, rate_hz);
+	mutex_unlock(&phantom_servo->control);
 	if (error)
-		goto no_node;
+		goto no_power;
 	phantom_chardev_init(&phantom_chardev, phantom_servo);
+	error = phantom_power_register(&phantom_power, phantom_servo);
+	if (error)
+		goto no_power;
 	error = phantom_node_register(&phantom_node, &phantom_chardev);
 	if (error)
-		goto no_chardev;
+		goto no_node;
 	pr_info("/dev/phantom_rt0 is there: device %s, %u Hz, float sections in %s\n",
 		phantom_device ? phantom_device->ops->name : "none", rate_hz, ops->name);
 	return 0;
 
-no_chardev:
-	phantom_chardev_destroy(&phantom_chardev);
 no_node:
+	phantom_power_unregister(&phantom_power);
+no_power:
 	phantom_servo_destroy(phantom_servo);
 no_servo:
 	kfree(phantom_servo);
@@ -118,7 +125,7 @@ no_memory:
 static void __exit phantom_exit(void)
 {
 	phantom_node_unregister(&phantom_node);
-	phantom_chardev_destroy(&phantom_chardev);
+	phantom_power_unregister(&phantom_power);
 	phantom_servo_destroy(phantom_servo);
 	kfree(phantom_servo);
 	phantom_destroy_device();

@@ -22,10 +22,13 @@
  * felt coming. A fast tip may start its path outside the new set's coverage; a crossing that the
  * set does know is a crossing all the same.
  *
- * FLOAT SECTIONS run with preemption off: no sleeping lock, no allocation, no copy from user, no
- * print between begin and end, and nothing but float/ is called there.
+ * CONTEXT RULES stand in phantom_servo.h. Here: everything is the servo thread's but prepare(),
+ * which is a submitter's, and what says "run state". Float sections run with preemption off: no
+ * sleeping lock, no allocation, no copy from user, no print between begin and end, and nothing but
+ * float/ is called there.
  */
 #include <phantom_platform.h>
+#include "phantom_context.h"
 #include "phantom_servo.h"
 
 /* Readers of records are woken at most this often: at 10 kHz ten records cost one wake-up. */
@@ -45,8 +48,10 @@ static void phantom_servo_float_tick(struct phantom_servo *servo,
 	struct phantom_stats *stats = &servo->stats;
 	u64 begin, length;
 
+	phantom_context_servo(servo);
 	begin = phantom_servo_now(servo);
 	kernel_fpu_begin();
+	phantom_context_section();
 	ops->tick(&servo->job);
 	kernel_fpu_end();
 	length = phantom_servo_now(servo) - begin;
@@ -68,6 +73,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		.material_count = copy->header.material_count,
 	};
 
+	phantom_context_submitter(&servo->sets);
 	do {
 		u64 begin = phantom_servo_now(servo);
 		u64 length;
@@ -75,6 +81,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		prepare.count =
 			min_t(u32, slot->patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);
 		kernel_fpu_begin();
+		phantom_context_section();
 		slot->ops->prepare(&prepare);
 		kernel_fpu_end();
 		length = min_t(u64, phantom_servo_now(servo) - begin, U32_MAX);
@@ -89,6 +96,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 
 void phantom_servo_forget_touch(struct phantom_servo *servo)
 {
+	phantom_context_run(servo);
 	memset(&servo->touch, 0, sizeof(servo->touch));
 	servo->touch.proxy_face = PHANTOM_PATCH_NONE;
 }
@@ -172,6 +180,8 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 	}
 	job->set = slot->floats;
 	job->effects = slot->effects;
+	memcpy(job->centre_nm, slot->centre_nm, sizeof(job->centre_nm));
+	job->radius_nm = slot->radius_nm;
 	for (axis = 0; axis < 3; axis++)
 		job->velocity_nm_s[axis] =
 			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
@@ -240,6 +250,7 @@ static void phantom_servo_sense(struct phantom_servo *servo, struct phantom_pass
 
 	if (error) {
 		phantom_safety_raise(safety, phantom_servo_device_fault(error));
+		pass->flags |= PHANTOM_TICK_UNREAD;
 		memcpy(pass->tip_nm, safety->tip_nm, sizeof(pass->tip_nm));
 		return;
 	}
@@ -259,16 +270,22 @@ static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *
 		servo->stats.next.fades++;
 	if (phantom_fade_blend(&servo->fade, pass->target_un, pass->now_ns, pass->target_un))
 		pass->flags |= PHANTOM_TICK_FADING;
-	if (xchg(&servo->clear_wanted, 0))
+	if (xchg(&servo->clear_wanted, 0)) {
 		phantom_safety_clear(safety);
+		pass->flags |= PHANTOM_TICK_CLEARED;
+	}
 	wish = xchg(&servo->stop_wanted, 0);
-	if (wish)
+	if (wish) {
 		phantom_safety_stop(safety, wish == PHANTOM_WISH_ABANDON);
+		pass->flags |= wish == PHANTOM_WISH_ABANDON ? PHANTOM_TICK_ABANDONED
+							    : PHANTOM_TICK_STOPPED;
+	}
 	pass->flags |= phantom_safety_apply(safety, pass->target_un, pass->elapsed_ns,
 					    pass->period_ns, pass->force_un);
 	error = servo->device->ops->write(servo->device, pass->force_un);
 	if (error) {
 		phantom_safety_raise(safety, phantom_servo_device_fault(error));
+		pass->flags |= PHANTOM_TICK_UNSENT;
 		memset(safety->force_un, 0, sizeof(safety->force_un));
 		memset(pass->force_un, 0, sizeof(pass->force_un));
 	}
@@ -285,12 +302,14 @@ static void phantom_servo_record(struct phantom_servo *servo, const struct phant
 	struct phantom_tick record = {
 		.tick = next->tick,
 		.time_ns = pass->now_ns,
-		.set_id = servo->reached ? next->set_id : 0,
+		.set_id = next->set_id,
 		.contacts = pass->contacts,
 		.flags = pass->flags,
 		.faults = servo->safety.faults,
 		.latency_ns = min_t(u64, latency_ns, U32_MAX),
 		.duration_ns = min_t(u64, duration_ns, U32_MAX),
+		.rate_hz = next->rate_hz,
+		.model = PHANTOM_TICK_MODEL(&servo->job.model),
 	};
 
 	memcpy(record.tip_nm, pass->tip_nm, sizeof(record.tip_nm));
@@ -399,6 +418,7 @@ bool phantom_servo_step(struct phantom_servo *servo)
 	u64 now = phantom_servo_now(servo);
 	u64 skipped;
 
+	phantom_context_servo(servo);
 	next->rate_hz = rate_hz;
 	next->tick++;
 	phantom_servo_tick(servo, now, period);
@@ -419,20 +439,37 @@ void phantom_servo_set_clock(struct phantom_servo *servo)
 {
 	u64 now = phantom_servo_now(servo);
 
-	servo->stats.next.start_ns = now;
+	phantom_context_run(servo);
+	/* a run that goes on after the machine slept began when it began */
+	if (!servo->stats.next.tick)
+		servo->stats.next.start_ns = now;
 	servo->next_ns = now + NSEC_PER_SEC / READ_ONCE(servo->rate_hz);
 	servo->last_ns = now;
 	servo->woken_ns = now;
 	servo->reminded_ns = now;
 }
 
+void phantom_servo_enter(struct phantom_servo *servo)
+{
+	WRITE_ONCE(servo->thread, current);
+	phantom_context_servo(servo);
+}
+
+void phantom_servo_leave(struct phantom_servo *servo)
+{
+	WRITE_ONCE(servo->thread, NULL);
+}
+
 void phantom_servo_run(struct phantom_servo *servo)
 {
 	struct phantom_clock *clock = servo->clock;
 
+	lockdep_assert_not_held(&servo->control);
+	phantom_servo_enter(servo);
 	/* again: making this thread may have taken many periods, and none of them is a missed tick */
 	phantom_servo_set_clock(servo);
 	while (clock->ops->sleep_until(clock, servo->next_ns))
 		if (!phantom_servo_step(servo))
 			break;
+	phantom_servo_leave(servo);
 }

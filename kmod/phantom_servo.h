@@ -2,11 +2,27 @@
 /*
  * phantom_servo.h - the fast task: one tick per period turns the tip's position into a force.
  *
+ * WHAT MAY BE CALLED WHERE (asserted, see phantom_context.h)
+ *
+ *   servo       The servo thread, or whoever steps a virtual clock. Calls the device's read and
+ *               write, takes and releases sets, opens float sections, writes statistics, wakes
+ *               readers. Takes no mutex of the module, allocates nothing, touches no user memory,
+ *               waits for the clock only. (A wake-up takes the wait queue's own lock, which is held
+ *               for a few instructions and has priority inheritance.)
+ *   section     Between kernel_fpu_begin() and kernel_fpu_end(), preemption off. Nothing but float/.
+ *   control     Process context, servo->control held. Everything under "control" below. Sleeps.
+ *   submitter   Process context, sets.submitting held. phantom_set_fill() ... forget(). Sleeps, also
+ *               on the caller's memory; keeps neither servo nor control waiting.
+ *   file        Process context, neither mutex held. read, poll, mmap, GET_INFO, SIM_MOVE: words,
+ *               the ring and the page.
+ *   atomic      Interrupts, timers, a driver's raw_event: phantom_mailbox_post(), nothing else.
+ *
+ *   Mutexes are taken in this order: file->reading, servo->control, sets.submitting.
+ *
  * WHO MAY TOUCH WHAT
- *   "control" is any thread that holds the character device's control mutex. The servo thread
- *   takes no lock that control holds, and waits for nobody.
  *
  *   fixed      set by init, read by all
+ *   control    the holder's of servo->control
  *   word       one aligned word, READ_ONCE/WRITE_ONCE; written by the side named, read by any
  *   request    set by control with a release store, taken by the servo with xchg
  *   run        the servo's while it runs, control's while it does not. start() and stop() of the
@@ -60,9 +76,17 @@ struct phantom_servo {
 	const struct phantom_float_ops *double_ops; /* NULL: not offered */
 	u64 features; /* PHANTOM_FEATURE_... */
 
+	struct mutex control; /* one at a time changes the servo */
+
+	/* control */
+	struct phantom_limits limits; /* of this run, as START asked for them */
+	bool asleep; /* between suspend() and resume(): a run has no thread */
+
 	/* word, control */
 	u32 rate_hz;
 	u64 model; /* packed, one byte a field: phantom_model_pack() */
+
+	/* word, submitter */
 	u32 prepare_max_ns; /* longest float section of a submission */
 
 	/* request */
@@ -70,6 +94,7 @@ struct phantom_servo {
 	u32 clear_wanted;
 
 	/* word, servo while it runs, else control */
+	struct task_struct *thread; /* the servo thread; NULL while there is none */
 	u32 state; /* PHANTOM_STATE_... */
 	u32 faults; /* latched */
 	u32 causes; /* of the last tick */
@@ -100,7 +125,7 @@ struct phantom_servo {
 
 /*
  * patches_max: PHANTOM_PATCHES_MAX, or more in user mode. double_ops may be NULL. 0 or -errno.
- * The servo owns neither clock nor device.
+ * The servo owns neither clock nor device. Process context, as destroy().
  */
 int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 		       struct phantom_device *device, const struct phantom_float_ops *float_ops,
@@ -108,7 +133,7 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 /* Not running. */
 void phantom_servo_destroy(struct phantom_servo *servo);
 
-/* ---- control mutex held; errors as phantom_abi.h says -------------------- */
+/* ---- control; errors as phantom_abi.h says ------------------------------- */
 int phantom_servo_start(struct phantom_servo *servo, const struct phantom_start *start);
 /*
  * Sleeps until the force has ramped to zero and nothing of the servo runs. ABANDON is for a feeder
@@ -120,10 +145,20 @@ void phantom_servo_stop(struct phantom_servo *servo, u32 wish);
 int phantom_servo_clear_fault(struct phantom_servo *servo);
 int phantom_servo_set_rate(struct phantom_servo *servo, u32 rate_hz);
 int phantom_servo_set_model(struct phantom_servo *servo, const struct phantom_model *model);
-/* `user` points to a struct phantom_set in the caller's memory. */
-int phantom_servo_submit(struct phantom_servo *servo, const void __user *user);
 /* The feeder has gone: no set, no contact state. Not running. */
 void phantom_servo_forget(struct phantom_servo *servo);
+/*
+ * The machine goes to sleep: ramps down as ABANDON does, ends the thread, switches the device off and
+ * latches PHANTOM_FAULT_SUSPENDED; nothing to do in IDLE. It has woken up: device and thread are
+ * there again, the force stays zero until CLEAR_FAULT. Neither counts as missed ticks.
+ */
+void phantom_servo_suspend(struct phantom_servo *servo);
+/* 0; -errno: device or thread could not be started again, the run is over (IDLE, fault latched). */
+int phantom_servo_resume(struct phantom_servo *servo);
+
+/* ---- file ---------------------------------------------------------------- */
+/* `user` points to a struct phantom_set in the caller's memory. Becomes submitter. */
+int phantom_servo_submit(struct phantom_servo *servo, const void __user *user);
 
 /* ---- between phantom_control.c and phantom_servo.c ----------------------- */
 static inline u64 phantom_model_pack(const struct phantom_model *model)
@@ -142,20 +177,20 @@ static inline void phantom_model_unpack(u64 packed, struct phantom_model *model)
 	model->arith = packed >> 32 & 0xff;
 }
 
-/*
- * Converts sets.copy into the slot, one float section per PHANTOM_FLOAT_PREPARE_MAX patches.
- * Process context, control mutex held.
- */
+/* Converts sets.copy into the slot, one float section per PHANTOM_FLOAT_PREPARE_MAX. Submitter. */
 void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot);
 /* Run state. */
 void phantom_servo_forget_touch(struct phantom_servo *servo);
-/* The run begins now, its first tick one period later. */
+/* Time begins now, the first tick comes one period later. Run state. */
 void phantom_servo_set_clock(struct phantom_servo *servo);
 
-/* ---- for clocks only: the servo thread ----------------------------------- */
-/* Ticks until stopped. */
+/* ---- for clocks only ----------------------------------------------------- */
+/* The calling thread is the servo thread until leave(). run() does both. */
+void phantom_servo_enter(struct phantom_servo *servo);
+void phantom_servo_leave(struct phantom_servo *servo);
+/* Becomes the servo thread and ticks until stopped. */
 void phantom_servo_run(struct phantom_servo *servo);
-/* One tick and the choice of the next period, at servo->next_ns. False: the run is over. */
+/* One tick and the choice of the next period, at servo->next_ns. False: the run is over. Servo. */
 bool phantom_servo_step(struct phantom_servo *servo);
 
 #endif /* PHANTOM_SERVO_H */

@@ -8,6 +8,7 @@
 void phantom_set_init(struct phantom_sets *sets, u32 patches_max)
 {
 	memset(sets, 0, sizeof(*sets));
+	mutex_init(&sets->submitting);
 	sets->patches_max = patches_max;
 }
 
@@ -18,6 +19,7 @@ void phantom_set_destroy(struct phantom_sets *sets)
 	for (i = 0; i < PHANTOM_SLOTS; i++)
 		vfree(sets->slot[i].floats);
 	vfree(sets->copy.patches);
+	mutex_destroy(&sets->submitting);
 	memset(sets, 0, sizeof(*sets));
 }
 
@@ -110,6 +112,7 @@ struct phantom_slot *phantom_set_fill(struct phantom_sets *sets, const void __us
 	struct phantom_slot *slot;
 	int error;
 
+	lockdep_assert_held(&sets->submitting);
 	if (copy_from_user(&copy->header, user, sizeof(copy->header)))
 		return ERR_PTR(-EFAULT);
 	error = phantom_set_check_header(&copy->header, sets->last_id, sets->patches_max);
@@ -135,6 +138,7 @@ void phantom_set_hand_over(struct phantom_sets *sets, struct phantom_slot *slot)
 {
 	struct phantom_slot *replaced;
 
+	lockdep_assert_held(&sets->submitting);
 	sets->last_id = slot->id;
 	WRITE_ONCE(slot->holder, PHANTOM_SLOT_HELD);
 	replaced = xchg(&sets->waiting, slot);
@@ -146,6 +150,7 @@ void phantom_set_forget(struct phantom_sets *sets)
 {
 	struct phantom_slot *waiting = xchg(&sets->waiting, NULL);
 
+	lockdep_assert_held(&sets->submitting);
 	if (waiting)
 		phantom_set_release(waiting);
 	sets->last_id = 0;

@@ -12,7 +12,7 @@
  * WAITING is the one pointer `waiting`, exchanged atomically by both sides; a slot becomes FREE
  * by a release store and is picked by an acquire load. In use, waiting and being filled makes
  * three; the fourth lets a submitter work while the servo still holds an outgoing set. Submitters
- * are serialised by the control mutex.
+ * are serialised by a mutex of their own.
  */
 #ifndef PHANTOM_SET_H
 #define PHANTOM_SET_H
@@ -50,7 +50,7 @@ struct phantom_slot {
 	u32 capacity; /* patches that floats has room for, as ops lays them out */
 };
 
-/* The caller's arrays, copied before anything is believed. Control mutex. */
+/* The caller's arrays, copied before anything is believed. The submitter's. */
 struct phantom_set_copy {
 	struct phantom_set header;
 	struct phantom_material materials[PHANTOM_MATERIALS_MAX];
@@ -63,7 +63,7 @@ struct phantom_set_copy {
 struct phantom_sets {
 	struct phantom_slot slot[PHANTOM_SLOTS];
 	struct phantom_slot *waiting; /* exchanged atomically */
-	/* Control mutex: */
+	struct mutex submitting; /* one submitter at a time; guards what follows */
 	struct phantom_set_copy copy;
 	u64 last_id;
 	u32 patches_max;
@@ -73,7 +73,7 @@ void phantom_set_init(struct phantom_sets *sets, u32 patches_max);
 /* No servo, no submitter any more. */
 void phantom_set_destroy(struct phantom_sets *sets);
 
-/* ---- submitter, process context, control mutex held ---------------------- */
+/* ---- submitter: process context, `submitting` held ----------------------- */
 
 /*
  * Copies and validates the set, and picks a slot with room for it in the layout of `ops`. The

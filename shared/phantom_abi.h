@@ -35,6 +35,11 @@
  *   FAULT    the tick still runs and reports, the force is zero. Latched: only
  *            CLEAR_FAULT, or STOP followed by CLEAR_FAULT, ends it.
  *
+ *   When the machine goes to sleep (suspend, hibernation) a run's force ramps down within
+ *   PHANTOM_FADE_NS, the device is switched off and PHANTOM_FAULT_SUSPENDED is latched; no tick
+ *   runs. When it wakes up the ticks go on without a missed one, in FAULT: nobody's arm jumps.
+ *   Steps of the wall clock change nothing: all times are CLOCK_MONOTONIC.
+ *
  * UNITS
  *   Everything is an integer in an SI unit; no float crosses this border.
  *     position, length   nm; __s32 relative to the set's origin, __s64 absolute
@@ -85,7 +90,7 @@
  *   SET_RATE      EINVAL   not within rate_min_hz ... rate_max_hz; reserved not zero
  *   SET_MODEL     EINVAL   unknown value, newton_steps > 3; reserved not zero
  *                 EOPNOTSUPP  a known value that info.features does not offer
- *   START         EBUSY    not IDLE
+ *   START         EBUSY    not IDLE, or the machine is about to sleep
  *                 EIO      a latched fault: CLEAR_FAULT first
  *                 EINVAL   a force above the device's, ramp_ms > PHANTOM_RAMP_MAX_MS, unknown
  *                          flag, reserved not zero
@@ -106,7 +111,7 @@
  *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
  *                 EINVAL   beyond PHANTOM_POSITION_MAX_NM, reserved not zero
- *   CLEAR_FAULT   EAGAIN   the cause is still there
+ *   CLEAR_FAULT   EAGAIN   the cause is still there (asleep counts)
  *                 (0 when no fault is latched; else the next tick clears, and ramps up)
  *   mmap          EPERM    writable or executable; EINVAL: offset not 0 or too long
  *   read          EINVAL   the buffer is smaller than one record
@@ -198,6 +203,7 @@
 #define PHANTOM_FAULT_STALL (1U << 2) /* a tick came later than start.stall_us */
 #define PHANTOM_FAULT_NUMERIC (1U << 3) /* a float section gave a value that is no number */
 #define PHANTOM_FAULT_UNPLUGGED (1U << 4)
+#define PHANTOM_FAULT_SUSPENDED (1U << 5) /* the machine went to sleep during the run */
 
 /* GET_INFO. Written by the module. */
 struct phantom_info {
@@ -333,12 +339,18 @@ struct phantom_sim_move {
 #define PHANTOM_TICK_SLEWED (1U << 5) /* slew_un_per_ms held the force back */
 #define PHANTOM_TICK_RAMPING (1U << 6) /* START, STOP or CLEAR_FAULT is ramping */
 #define PHANTOM_TICK_SATURATED (1U << 7) /* a conversion saturated */
+/* What came to this tick from outside, so that it can be computed again from its record. */
+#define PHANTOM_TICK_STOPPED (1U << 8) /* it took STOP: the ramp goes down from here */
+#define PHANTOM_TICK_ABANDONED (1U << 9) /* it took the feeder's close or death */
+#define PHANTOM_TICK_CLEARED (1U << 10) /* it took CLEAR_FAULT */
+#define PHANTOM_TICK_UNREAD (1U << 11) /* the device gave no position: the tip is the last known */
+#define PHANTOM_TICK_UNSENT (1U << 12) /* the device did not take the force */
 
 /* One record of read(): one tick. */
 struct phantom_tick {
 	__u64 tick; /* number of its period, from 1; a gap = periods missed or records lost */
 	__u64 time_ns;
-	__u64 set_id; /* of the set the force came from; 0 = none */
+	__u64 set_id; /* of the set in use, whether it covers the tip or not; 0 = none */
 	__s64 tip_nm[3];
 	__s64 proxy_nm[3]; /* = tip outside the surface */
 	__s32 force_un[3]; /* as sent to the device */
@@ -347,7 +359,14 @@ struct phantom_tick {
 	__u32 faults; /* PHANTOM_FAULT_..., latched */
 	__u32 latency_ns; /* wake-up after the begin of the period that was waited for */
 	__u32 duration_ns; /* of the whole tick */
+	__u32 rate_hz; /* in force */
+	__u32 model; /* in force: PHANTOM_TICK_MODEL() */
 };
+
+/* struct phantom_model in one word, 4 bits a field. */
+#define PHANTOM_TICK_MODEL(m)                                                                      \
+	((m)->model | (m)->newton_steps << 4 | (m)->combine << 8 | (m)->proxy << 12 |              \
+	 (m)->arith << 16)
 
 /*
  * A histogram of durations: bucket b < 8 counts b ns; above, 8 buckets an octave:

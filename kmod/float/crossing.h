@@ -17,7 +17,7 @@
 #ifndef PHANTOM_FLOAT_CROSSING_H
 #define PHANTOM_FLOAT_CROSSING_H
 
-#include "block.h"
+#include "ring.h"
 
 enum crossing_way {
 	CROSSING_INWARD, /* from the front of a face to its back */
@@ -64,6 +64,39 @@ static inline bool segment_set(struct segment *segment, const s32 begin_nm[3], c
 	segment->shear_y = way[segment->y] * segment->inverse_z;
 	segment->length = real_sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
 	return true;
+}
+
+static inline s32 nm_saturate(s64 value)
+{
+	if (value > 0x7fffffff)
+		return 0x7fffffff;
+	if (value < -0x7fffffffLL - 1)
+		return -0x7fffffff - 1;
+	return (s32)value;
+}
+
+/* from + (by in mm), nm. */
+static inline void nm_offset(const s32 from[3], struct real3 by, s32 out[3])
+{
+	const real way[3] = {by.x, by.y, by.z};
+	u32 axis;
+
+	for (axis = 0; axis < 3; axis++) {
+		real step = real_clamp(way[axis] * NM_PER_MM, (real)-4e9, (real)4e9);
+
+		out[axis] =
+			nm_saturate(from[axis] + (s64)(step + (step < 0 ? (real)-0.5 : (real)0.5)));
+	}
+}
+
+/* to - from, mm. */
+static inline struct real3 nm_way(const s32 from[3], const s32 to[3])
+{
+	return (struct real3){
+		(real)((s64)to[0] - from[0]) * MM_PER_NM,
+		(real)((s64)to[1] - from[1]) * MM_PER_NM,
+		(real)((s64)to[2] - from[2]) * MM_PER_NM,
+	};
 }
 
 /* begin_nm + along (end - begin), to the nearest nm. */
@@ -142,13 +175,20 @@ LANES_INLINE mask_lanes crossing_candidates(const struct block *block, u32 step,
 	return candidates & (way == CROSSING_INWARD ? begin >= -rounding : begin <= rounding);
 }
 
+/* A segment that runs along a face meets the faces round it without passing through them. */
+struct beside {
+	u32 vertex[3]; /* of that face: whoever has one of them is not looked at */
+	u32 patch; /* nor is this one */
+};
+
 /*
  * The first crossing (or the last one) with along > after; of equals the patch with the lowest
- * index.
+ * index. `beside` may be NULL.
  */
-static inline struct crossing crossing_find(const struct phantom_float_set *set,
-					    const struct segment *segment, enum crossing_way way,
-					    bool last, real after)
+static inline struct crossing crossing_find_beside(const struct phantom_float_set *set,
+						   const struct segment *segment,
+						   enum crossing_way way, bool last, real after,
+						   const struct beside *beside)
 {
 	struct crossing found = {0, PHANTOM_PATCH_NONE};
 	real rounding = rounding_mm(set);
@@ -167,8 +207,14 @@ static inline struct crossing crossing_find(const struct phantom_float_set *set,
 				continue;
 			crossed = mask_bits(candidates &
 					    crossing_inside(block, step, segment, way, &along));
+			if (crossed && beside)
+				crossed &= ~(ring_touches(block, beside->vertex) >>
+					     step * PHANTOM_LANES);
 			for (lane = 0; crossed >> lane; lane++) {
 				if (!(crossed >> lane & 1) || !(along[lane] > after))
+					continue;
+				if (beside && beside->patch == block_index * PHANTOM_BLOCK +
+								       step * PHANTOM_LANES + lane)
 					continue;
 				if (found.patch != PHANTOM_PATCH_NONE &&
 				    !(last ? along[lane] > found.along : along[lane] < found.along))
@@ -180,6 +226,13 @@ static inline struct crossing crossing_find(const struct phantom_float_set *set,
 		}
 	}
 	return found;
+}
+
+static inline struct crossing crossing_find(const struct phantom_float_set *set,
+					    const struct segment *segment, enum crossing_way way,
+					    bool last, real after)
+{
+	return crossing_find_beside(set, segment, way, last, after, NULL);
 }
 
 #endif /* PHANTOM_FLOAT_CROSSING_H */

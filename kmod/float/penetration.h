@@ -36,29 +36,6 @@
 /* How far after an outward crossing an inward one must come to be another one, mm. */
 #define CROSSING_APART ((real)1e-5)
 
-static inline s32 nm_saturate(s64 value)
-{
-	if (value > 0x7fffffff)
-		return 0x7fffffff;
-	if (value < -0x7fffffffLL - 1)
-		return -0x7fffffff - 1;
-	return (s32)value;
-}
-
-/* to + (by in mm), nm. */
-static inline void nm_offset(const s32 from[3], struct real3 by, s32 out[3])
-{
-	const real way[3] = {by.x, by.y, by.z};
-	u32 axis;
-
-	for (axis = 0; axis < 3; axis++) {
-		real step = real_clamp(way[axis] * NM_PER_MM, (real)-4e9, (real)4e9);
-
-		out[axis] =
-			nm_saturate(from[axis] + (s64)(step + (step < 0 ? (real)-0.5 : (real)0.5)));
-	}
-}
-
 static inline void penetration_enter(struct phantom_float_job *job, const struct segment *segment,
 				     struct crossing at)
 {
@@ -279,27 +256,32 @@ static inline struct real3 surface_normal_paper(const struct block *block, u32 l
 	return lanes3_lane(paper_normal(wall), lane % PHANTOM_LANES);
 }
 
-/* F = k (R n(V) + (V - P1)) */
-static inline void penetration_force(const struct phantom_float_job *job, u32 patch,
-				     struct contact_force *out)
+/* n(V) of the patch that V lies on, of unit length. */
+static inline struct real3 penetration_normal(const struct phantom_float_job *job, u32 patch)
 {
 	const struct block *block = &job->set->blocks[patch / PHANTOM_BLOCK];
-	u32 lane = patch % PHANTOM_BLOCK, axis;
-	const struct float_material *material = &job->set->materials[block->material[lane]];
+	u32 lane = patch % PHANTOM_BLOCK;
 	struct real3 normal = job->model.model == PHANTOM_MODEL_PAPER
 				      ? surface_normal_paper(block, lane, job->proxy_nm)
 				      : surface_normal_barycentric(block, lane, job->proxy_nm);
-	real length = real3_length(normal), pull[3];
+	real length = real3_length(normal);
 
-	if (!(length > 0)) {
-		normal = row3_lane(&block->face_normal, lane);
-		length = 1;
-	}
-	for (axis = 0; axis < 3; axis++)
-		pull[axis] = (real)((s64)job->proxy_nm[axis] - job->tip_nm[axis]) * MM_PER_NM;
-	out->normal = real3_scale(normal, 1 / length);
-	out->force = real3_add(real3_scale(out->normal, material->radius),
-			       (struct real3){pull[0], pull[1], pull[2]});
+	if (!(length > 0))
+		return row3_lane(&block->face_normal, lane);
+	return real3_scale(normal, 1 / length);
+}
+
+/* F = k (R n(V) + (V - P1)) */
+static inline void penetration_force(const struct phantom_float_job *job, u32 patch,
+				     struct real3 normal, struct contact_force *out)
+{
+	const struct block *block = &job->set->blocks[patch / PHANTOM_BLOCK];
+	const struct float_material *material =
+		&job->set->materials[block->material[patch % PHANTOM_BLOCK]];
+
+	out->normal = normal;
+	out->force = real3_add(real3_scale(normal, material->radius),
+			       nm_way(job->tip_nm, job->proxy_nm));
 	out->force = real3_scale(out->force, material->stiffness);
 	out->damping = material->damping;
 	out->contacts = 1;

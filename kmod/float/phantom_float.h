@@ -57,6 +57,8 @@ struct phantom_float_job {
 	s32 previous_nm[3]; /* P0 */
 	s32 velocity_nm_s[3]; /* of the tip, filtered; for effects */
 	u32 effects; /* mask to run */
+	s32 centre_nm[3]; /* the set's coverage: what lies nearer than radius_nm is in the set */
+	u32 radius_nm;
 	u32 path_valid; /* 0: P0 means nothing (first tick), no crossing is looked for */
 	/* state, in and out */
 	u32 inside;

@@ -13,6 +13,7 @@
 #include "paper_fans.h"
 #include "crossing.h"
 #include "penetration.h"
+#include "constrained.h"
 #include "effects/damping.h"
 
 /* Model `paper`: evaluate, remove overlap, combine. */
@@ -111,13 +112,18 @@ static inline void section_contact(struct phantom_float_job *job, struct contact
 
 	if (job->model.proxy == PHANTOM_PROXY_OFF)
 		penetration_leave(job);
+	if (job->model.proxy == PHANTOM_PROXY_CONSTRAINED) {
+		if (!constrained_tick(job, out))
+			section_outside(job, out);
+		return;
+	}
 	if (job->inside) {
 		bool settled = penetration_from_inside(job);
 
 		if (!settled || job->inside) {
 			patch = settled ? penetration_find_patch(job) : penetration_follow(job);
 			if (patch != PHANTOM_PATCH_NONE)
-				penetration_force(job, patch, out);
+				penetration_force(job, patch, penetration_normal(job, patch), out);
 			if (job->inside)
 				return;
 		}
@@ -127,7 +133,7 @@ static inline void section_contact(struct phantom_float_job *job, struct contact
 	if (job->model.proxy != PHANTOM_PROXY_OFF && penetration_from_outside(job)) {
 		patch = penetration_find_patch(job);
 		if (patch != PHANTOM_PATCH_NONE)
-			penetration_force(job, patch, out);
+			penetration_force(job, patch, penetration_normal(job, patch), out);
 		return;
 	}
 	section_outside(job, out);

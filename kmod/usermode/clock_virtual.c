@@ -35,16 +35,27 @@ static bool virtual_sleep_until(struct phantom_clock *clock, u64 deadline_ns)
 	return true;
 }
 
+/* One tick at the present time. Stepping held. False: the run is over. */
+static bool virtual_tick(struct phantom_virtual_clock *virtual)
+{
+	struct phantom_servo *servo = virtual->servo;
+	bool goes_on;
+
+	phantom_servo_enter(servo);
+	goes_on = phantom_servo_step(servo);
+	phantom_servo_leave(servo);
+	if (!goes_on)
+		virtual->servo = NULL;
+	return goes_on;
+}
+
 /* Stepping held. False: the run is over. */
 static bool virtual_step(struct phantom_virtual_clock *virtual)
 {
 	struct phantom_servo *servo = virtual->servo;
 
 	virtual_sleep_until(&virtual->clock, servo->next_ns);
-	if (phantom_servo_step(servo))
-		return true;
-	virtual->servo = NULL;
-	return false;
+	return virtual_tick(virtual);
 }
 
 /* Nobody else moves this clock on: the ramp is stepped here, as many ticks as the timeout has. */
@@ -72,6 +83,32 @@ int phantom_virtual_clock_step(struct phantom_virtual_clock *virtual, u32 ticks)
 	}
 	mutex_unlock(&virtual->stepping);
 	return done || !ticks ? (int)done : -EAGAIN;
+}
+
+void phantom_virtual_clock_set(struct phantom_virtual_clock *virtual, u64 now_ns)
+{
+	mutex_lock(&virtual->stepping);
+	WRITE_ONCE(virtual->now_ns, now_ns);
+	mutex_unlock(&virtual->stepping);
+}
+
+/* Periods that the other machine skipped before this one are counted as skipped here. */
+int phantom_virtual_clock_replay(struct phantom_virtual_clock *virtual, u64 tick, u64 now_ns,
+				 u64 due_ns)
+{
+	struct phantom_servo *servo;
+
+	mutex_lock(&virtual->stepping);
+	servo = virtual->servo;
+	if (servo) {
+		WRITE_ONCE(virtual->now_ns, now_ns);
+		servo->next_ns = due_ns;
+		servo->stats.next.missed += tick - 1 - servo->stats.next.tick;
+		servo->stats.next.tick = tick - 1;
+		virtual_tick(virtual);
+	}
+	mutex_unlock(&virtual->stepping);
+	return servo ? 1 : -EAGAIN;
 }
 
 static const struct phantom_clock_ops virtual_clock_ops = {

@@ -34,5 +34,10 @@ void phantom_virtual_clock_init(struct phantom_virtual_clock *virtual);
 void phantom_virtual_clock_destroy(struct phantom_virtual_clock *virtual);
 /* Ticks run; -EAGAIN when not started. */
 int phantom_virtual_clock_step(struct phantom_virtual_clock *virtual, u32 ticks);
+/* Where the clock stands from now on, until it is stepped. */
+void phantom_virtual_clock_set(struct phantom_virtual_clock *virtual, u64 now_ns);
+/* One tick with that number, at now_ns, of the period that began at due_ns. 1, or -EAGAIN. */
+int phantom_virtual_clock_replay(struct phantom_virtual_clock *virtual, u64 tick, u64 now_ns,
+				 u64 due_ns);
 
 #endif /* PHANTOM_CLOCKS_H */

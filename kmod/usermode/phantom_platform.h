@@ -3,8 +3,8 @@
  * phantom_platform.h - the seam between the module and what it runs on, a process's side.
  *
  * The names are the kernel's and mean the same; only what the module uses is here. Behind them are
- * pthreads and the C library (platform.c). Two checks that a production kernel does not make come
- * with it: sleeping or allocating inside a float section aborts, and so does nesting two.
+ * pthreads and the C library (platform.c). The checks of a debug kernel come with it: sleeping,
+ * allocating or nesting inside a float section aborts, and so does a broken context rule.
  *
  * x86-64 only, as the float sections are: the memory barriers lean on its ordering (stores are
  * not reordered with stores, nor loads with loads), so that the thread sanitizer, which knows no
@@ -119,17 +119,32 @@ unsigned long copy_from_user(void *to, const void *from, unsigned long size);
 unsigned long copy_to_user(void *to, const void *from, unsigned long size);
 
 /* ---- mutexes with priority inheritance, as on PREEMPT_RT ----------------- */
+struct task_struct; /* a thread; never looked into */
+struct task_struct *phantom_platform_current(void);
+#define current phantom_platform_current()
+
 struct mutex {
 	pthread_mutex_t lock;
-	u32 held;
+	struct task_struct *holder; /* word */
 };
 
 void mutex_init(struct mutex *mutex);
 void mutex_destroy(struct mutex *mutex);
 void mutex_lock(struct mutex *mutex);
 void mutex_unlock(struct mutex *mutex);
-void phantom_platform_assert_held(const struct mutex *mutex);
-#define lockdep_assert_held(mutex) phantom_platform_assert_held(mutex)
+
+/* ---- contexts: what a debug kernel warns of ends the process, in every build */
+bool lockdep_is_held(const struct mutex *mutex);
+bool phantom_platform_in_section(void);
+/* Aborts when inside a float section. */
+void phantom_platform_may_sleep(const char *what);
+__attribute__((noreturn)) void phantom_platform_broken(const char *rule, const char *where);
+#define lockdep_assert(rule) ((rule) ? (void)0 : phantom_platform_broken(#rule, __func__))
+#define lockdep_assert_held(mutex) lockdep_assert(lockdep_is_held(mutex))
+#define lockdep_assert_not_held(mutex) lockdep_assert(!lockdep_is_held(mutex))
+#define lockdep_assert_preemption_disabled() lockdep_assert(phantom_platform_in_section())
+#define lockdep_assert_preemption_enabled() lockdep_assert(!phantom_platform_in_section())
+#define might_sleep() phantom_platform_may_sleep(__func__)
 
 /* ---- wait queues --------------------------------------------------------- */
 typedef struct {

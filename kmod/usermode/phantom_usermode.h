@@ -61,12 +61,28 @@ int phantom_um_poll(struct phantom_um_file *file, short events, int timeout_ms);
  */
 int phantom_um_step(struct phantom_um *machine, uint32_t ticks);
 
+/*
+ * VIRTUAL only: another machine's run, tick by tick from its records. set_time() before START
+ * says when that run began. replay() runs the tick that left this record: at its time, of the
+ * period that began at due_ns, with its tip, and with the STOP, CLEAR_FAULT or error of the device
+ * that came to it. Sets, rate and model are given by the calls, before it. A run that has
+ * ended is ended here too by PHANTOM_STOP. -EINVAL on a REAL machine, -EAGAIN when not started or
+ * the run is over, else 1.
+ */
+int phantom_um_set_time(struct phantom_um *machine, uint64_t now_ns);
+int phantom_um_replay(struct phantom_um *machine, const struct phantom_tick *record,
+		      uint64_t due_ns);
+
 /* For reports: what the servo thread got. */
 struct phantom_um_thread_info {
 	int32_t fifo; /* 1 = SCHED_FIFO, 0 = the system did not allow it, -errno = not started */
 	int32_t cpu; /* pinned to, or -1 */
 };
 void phantom_um_thread(const struct phantom_um *machine, struct phantom_um_thread_info *info);
+
+/* What the kernel's module does before the machine goes to sleep, and when it has woken up. */
+void phantom_um_suspend(struct phantom_um *machine);
+int phantom_um_resume(struct phantom_um *machine);
 
 /*
  * Tests only. The next tick comes that much later (either clock). The device answers every read

@@ -22,7 +22,12 @@
 
 static _Thread_local bool platform_in_section;
 
-static void platform_may_sleep(const char *what)
+bool phantom_platform_in_section(void)
+{
+	return platform_in_section;
+}
+
+void phantom_platform_may_sleep(const char *what)
 {
 	if (platform_in_section) {
 		fprintf(stderr, "phantom_rt: %s inside a float section\n", what);
@@ -30,9 +35,21 @@ static void platform_may_sleep(const char *what)
 	}
 }
 
+struct task_struct *phantom_platform_current(void)
+{
+	/* an address that no other living thread has */
+	return (struct task_struct *)&platform_in_section;
+}
+
+void phantom_platform_broken(const char *rule, const char *where)
+{
+	fprintf(stderr, "phantom_rt: context rule broken in %s(): %s\n", where, rule);
+	abort();
+}
+
 void kernel_fpu_begin(void)
 {
-	platform_may_sleep("kernel_fpu_begin()");
+	phantom_platform_may_sleep("kernel_fpu_begin()");
 	platform_in_section = true;
 }
 
@@ -85,7 +102,7 @@ void phantom_um_inject_allocation_failure(uint32_t nth)
 
 bool phantom_platform_allocation_fails(void)
 {
-	platform_may_sleep("an allocation");
+	phantom_platform_may_sleep("an allocation");
 	return platform_fail_in && --platform_fail_in == 0;
 }
 
@@ -104,7 +121,7 @@ void *vzalloc(unsigned long size)
 
 void vfree(const void *memory)
 {
-	platform_may_sleep("vfree()");
+	phantom_platform_may_sleep("vfree()");
 	free((void *)memory);
 }
 
@@ -128,7 +145,7 @@ static bool platform_is_nobodys(const void *memory)
 
 unsigned long copy_from_user(void *to, const void *from, unsigned long size)
 {
-	platform_may_sleep("copy_from_user()");
+	phantom_platform_may_sleep("copy_from_user()");
 	if (size && platform_is_nobodys(from))
 		return size;
 	if (size)
@@ -138,7 +155,7 @@ unsigned long copy_from_user(void *to, const void *from, unsigned long size)
 
 unsigned long copy_to_user(void *to, const void *from, unsigned long size)
 {
-	platform_may_sleep("copy_to_user()");
+	phantom_platform_may_sleep("copy_to_user()");
 	if (size && platform_is_nobodys(to))
 		return size;
 	if (size)
@@ -161,7 +178,7 @@ static void platform_lock_init(pthread_mutex_t *lock)
 void mutex_init(struct mutex *mutex)
 {
 	platform_lock_init(&mutex->lock);
-	mutex->held = 0;
+	mutex->holder = NULL;
 }
 
 void mutex_destroy(struct mutex *mutex)
@@ -171,23 +188,20 @@ void mutex_destroy(struct mutex *mutex)
 
 void mutex_lock(struct mutex *mutex)
 {
-	platform_may_sleep("mutex_lock()");
+	phantom_platform_may_sleep("mutex_lock()");
 	pthread_mutex_lock(&mutex->lock);
-	WRITE_ONCE(mutex->held, 1U);
+	WRITE_ONCE(mutex->holder, current);
 }
 
 void mutex_unlock(struct mutex *mutex)
 {
-	WRITE_ONCE(mutex->held, 0U);
+	WRITE_ONCE(mutex->holder, NULL);
 	pthread_mutex_unlock(&mutex->lock);
 }
 
-void phantom_platform_assert_held(const struct mutex *mutex)
+bool lockdep_is_held(const struct mutex *mutex)
 {
-	if (READ_ONCE(mutex->held))
-		return;
-	fprintf(stderr, "phantom_rt: a lock that should be held is not\n");
-	abort();
+	return READ_ONCE(mutex->holder) == current;
 }
 
 /* ---- wait queues --------------------------------------------------------- */
@@ -212,7 +226,7 @@ void phantom_platform_wait_destroy(wait_queue_head_t *queue)
 
 void phantom_platform_wait_begin(wait_queue_head_t *queue)
 {
-	platform_may_sleep("a wait");
+	phantom_platform_may_sleep("a wait");
 	pthread_mutex_lock(&queue->lock);
 	/* a full barrier: the condition is looked at after the waker can see us */
 	__atomic_add_fetch(&queue->sleepers, 1, __ATOMIC_SEQ_CST);
@@ -244,7 +258,7 @@ bool wq_has_sleeper(wait_queue_head_t *queue)
 
 void wake_up_interruptible(wait_queue_head_t *queue)
 {
-	platform_may_sleep("wake_up_interruptible()");
+	phantom_platform_may_sleep("wake_up_interruptible()");
 	pthread_mutex_lock(&queue->lock);
 	pthread_cond_broadcast(&queue->changed);
 	pthread_mutex_unlock(&queue->lock);

@@ -16,6 +16,7 @@ struct phantom_um_device {
 	struct phantom_device device; /* first, as the others read it */
 	struct phantom_device *behind;
 	int error; /* of every read; word */
+	int write_error; /* of every write; word */
 };
 
 struct phantom_um {
@@ -74,9 +75,10 @@ static int um_device_read(struct phantom_device *device, s64 tip_nm[3])
 
 static int um_device_write(struct phantom_device *device, const s32 force_un[3])
 {
-	struct phantom_device *behind = um_device_of(device)->behind;
+	struct phantom_um_device *front = um_device_of(device);
+	int error = READ_ONCE(front->write_error);
 
-	return behind->ops->write(behind, force_un);
+	return error ? error : front->behind->ops->write(front->behind, force_un);
 }
 
 static void um_device_move(struct phantom_device *device, const s64 tip_nm[3])
@@ -162,7 +164,9 @@ static int um_init(struct phantom_um *machine, const struct phantom_um_config *c
 				   patches);
 	if (error)
 		goto no_servo;
+	mutex_lock(&machine->servo.control);
 	error = config->rate_hz ? phantom_servo_set_rate(&machine->servo, config->rate_hz) : 0;
+	mutex_unlock(&machine->servo.control);
 	if (error)
 		goto no_rate;
 	phantom_chardev_init(&machine->chardev, &machine->servo);
@@ -194,7 +198,6 @@ void phantom_um_destroy(struct phantom_um *machine)
 {
 	if (!machine)
 		return;
-	phantom_chardev_destroy(&machine->chardev);
 	phantom_platform_wait_destroy(&machine->servo.wait);
 	phantom_servo_destroy(&machine->servo);
 	um_clock_destroy(machine);
@@ -209,12 +212,65 @@ int phantom_um_step(struct phantom_um *machine, uint32_t ticks)
 	return phantom_virtual_clock_step(&machine->clock.virtual, ticks);
 }
 
+int phantom_um_set_time(struct phantom_um *machine, uint64_t now_ns)
+{
+	if (machine->clock_kind != PHANTOM_UM_CLOCK_VIRTUAL)
+		return -EINVAL;
+	phantom_virtual_clock_set(&machine->clock.virtual, now_ns);
+	return 0;
+}
+
+int phantom_um_replay(struct phantom_um *machine, const struct phantom_tick *record,
+		      uint64_t due_ns)
+{
+	struct phantom_um_device *device = &machine->device;
+	struct phantom_servo *servo = &machine->servo;
+	int error = record->faults & PHANTOM_FAULT_DEVICE ? -EIO : -ENODEV;
+	s64 tip_nm[3];
+	int result;
+
+	if (machine->clock_kind != PHANTOM_UM_CLOCK_VIRTUAL)
+		return -EINVAL;
+	memcpy(tip_nm, record->tip_nm, sizeof(tip_nm));
+	um_device_move(&device->device, tip_nm);
+	WRITE_ONCE(device->error, record->flags & PHANTOM_TICK_UNREAD ? error : 0);
+	WRITE_ONCE(device->write_error, record->flags & PHANTOM_TICK_UNSENT ? error : 0);
+	if (record->flags & PHANTOM_TICK_CLEARED)
+		smp_store_release(&servo->clear_wanted, 1U);
+	if (record->flags & PHANTOM_TICK_ABANDONED)
+		smp_store_release(&servo->stop_wanted, PHANTOM_WISH_ABANDON);
+	else if (record->flags & PHANTOM_TICK_STOPPED)
+		smp_store_release(&servo->stop_wanted, PHANTOM_WISH_STOP);
+	result = phantom_virtual_clock_replay(&machine->clock.virtual, record->tick,
+					      record->time_ns, due_ns);
+	WRITE_ONCE(device->error, 0);
+	WRITE_ONCE(device->write_error, 0);
+	return result;
+}
+
 void phantom_um_thread(const struct phantom_um *machine, struct phantom_um_thread_info *info)
 {
 	bool real = machine->clock_kind == PHANTOM_UM_CLOCK_REAL;
 
 	info->fifo = real ? READ_ONCE(machine->clock.real.fifo) : 0;
 	info->cpu = real && machine->clock.real.cpu >= 0 ? machine->clock.real.cpu : -1;
+}
+
+void phantom_um_suspend(struct phantom_um *machine)
+{
+	mutex_lock(&machine->servo.control);
+	phantom_servo_suspend(&machine->servo);
+	mutex_unlock(&machine->servo.control);
+}
+
+int phantom_um_resume(struct phantom_um *machine)
+{
+	int error;
+
+	mutex_lock(&machine->servo.control);
+	error = phantom_servo_resume(&machine->servo);
+	mutex_unlock(&machine->servo.control);
+	return error;
 }
 
 void phantom_um_inject_stall(struct phantom_um *machine, uint64_t ns)

@@ -106,6 +106,7 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
     job_.model.proxy = settings.proxy;
     job_.model.arith = ops.isa == PHANTOM_ISA_DOUBLE ? PHANTOM_ARITH_DOUBLE : PHANTOM_ARITH_FLOAT;
     job_.effects = settings.effects;
+    job_.radius_nm = 2000000000; // a whole mesh
     restart();
 }
 

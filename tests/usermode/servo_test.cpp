@@ -309,7 +309,7 @@ TEST_F(Servo, CoverageLossFadesWithoutAStep)
         EXPECT_LE(force[i - 1] - force[i], 1e6 / fade_ticks + 2);
     }
     EXPECT_EQ(force[21], 0.0) << "within PHANTOM_FADE_NS";
-    EXPECT_EQ(feeder.read().back().set_id, 0u) << "the force comes from no set";
+    EXPECT_EQ(feeder.read().back().set_id, 1u) << "still in use, though it does not cover the tip";
 
     Plane wide(2);
     feeder.submit(wide);

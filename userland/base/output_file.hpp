@@ -16,8 +16,8 @@
 
 namespace phantom {
 
-/// A file being written: to a temporary one beside it, renamed by commit(), removed without it. What is there
-/// and is no regular file (a pipe, /dev/null) is written to directly.
+/// A file being written: to a temporary one beside it, renamed by commit() or publish(), removed without
+/// them. What is there and is no regular file (a pipe, /dev/null) is written to directly.
 class OutputFile {
   public:
     static Result<OutputFile> open(const std::filesystem::path& file)
@@ -58,6 +58,21 @@ class OutputFile {
     {
         if (std::fwrite(text.data(), 1, text.size(), stream_) == text.size())
             return success();
+        const int error = errno;
+        discard();
+        return failed(error);
+    }
+
+    /// For a file that is good at any length: it gets its name, and what was appended so far is in it. More
+    /// may come.
+    Status publish()
+    {
+        const bool written = std::fflush(stream_) == 0;
+        if (written && (direct_ || std::rename(written_.c_str(), file_.c_str()) == 0)) {
+            direct_ = true;
+            written_ = file_;
+            return success();
+        }
         const int error = errno;
         discard();
         return failed(error);

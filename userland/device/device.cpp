@@ -148,8 +148,12 @@ Status Device::start(const phantom_start& start)
     case -EPERM:
         return Error{name(), "limits can be switched off on a simulated device only"};
     default:
-        return rc < 0 ? Status(call_failed(name(), "START", rc)) : success();
+        if (rc < 0)
+            return call_failed(name(), "START", rc);
     }
+    if (listener_)
+        listener_->started(start, status().start_ns);
+    return success();
 }
 
 Status Device::stop()
@@ -158,9 +162,8 @@ Status Device::stop()
     return rc < 0 ? Status(call_failed(name(), "STOP", rc)) : success();
 }
 
-Result<bool> Device::try_submit(PatchSet& set)
+int Device::call_submit(PatchSet& set)
 {
-    set.header.id = last_set_id_ + 1;
     set.header.patch_count = static_cast<__u32>(set.patches.size());
     set.header.material_count = static_cast<__u32>(set.materials.size());
     set.header.object_count = static_cast<__u32>(set.objects.size());
@@ -170,8 +173,15 @@ Result<bool> Device::try_submit(PatchSet& set)
     set.header.effects = 0;
     for (const phantom_material& material : set.materials)
         set.header.effects |= material.effects;
+    if (listener_)
+        listener_->submitting(set);
+    return transport_->ioctl(PHANTOM_SUBMIT_SET, &set.header);
+}
 
-    const int rc = transport_->ioctl(PHANTOM_SUBMIT_SET, &set.header);
+Result<bool> Device::try_submit(PatchSet& set)
+{
+    set.header.id = last_set_id_ + 1;
+    const int rc = call_submit(set);
     if (rc == -EAGAIN)
         return false;
     if (rc == -EINVAL)
@@ -257,6 +267,31 @@ Result<std::vector<phantom_tick>> Device::read_ticks()
         return call_failed(name(), "read", static_cast<int>(rc));
     records.resize(static_cast<std::size_t>(rc) / sizeof(phantom_tick));
     return records;
+}
+
+Status Device::submit_as(PatchSet& set)
+{
+    if (const int rc = call_submit(set); rc < 0)
+        return call_failed(name(), fmt::format("SUBMIT_SET of set {}", set.header.id), rc);
+    last_set_id_ = set.header.id;
+    return success();
+}
+
+Result<bool> Device::replay(const phantom_tick& record, std::uint64_t due_ns)
+{
+    const int rc = transport_->replay(record, due_ns);
+    if (rc == -EAGAIN)
+        return false;
+    if (rc < 0)
+        return Error{name(), "only a machine with a virtual clock can replay"};
+    return true;
+}
+
+Status Device::set_time(std::uint64_t now_ns)
+{
+    if (transport_->set_time(now_ns) < 0)
+        return Error{name(), "only a virtual clock can be set"};
+    return success();
 }
 
 Status Device::step(std::uint32_t ticks)

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -37,8 +38,19 @@ enum class Access { feeder, observer };
 
 class Device {
   public:
-    /// The kernel's device. Fails with a sentence (not loaded, no permission, busy feeder).
-    static Result<Device> open_kernel(Access access, const std::string& node = PHANTOM_DEVICE_NODE);
+    /// Hears what the feeder asks of the device. Calls come from the thread that asks.
+    class Listener {
+      public:
+        virtual ~Listener() = default;
+        /// START succeeded; start_ns: of the status page.
+        virtual void started(const phantom_start& start, std::uint64_t start_ns) = 0;
+        /// SUBMIT_SET is about to be made; when it is refused, another may come with the same id.
+        virtual void submitting(const PatchSet& set) = 0;
+    };
+
+    /// The kernel's device; without a node the first of kernel_nodes(). Fails with a sentence (not loaded, no
+    /// permission, busy feeder).
+    static Result<Device> open_kernel(Access access, std::string node = {});
     /// A machine of our own.
     static Result<Device> open_usermode(const UsermodeOptions& options);
 
@@ -72,8 +84,17 @@ class Device {
     /// Records since the last call, at most 4096; empty when there are none.
     Result<std::vector<phantom_tick>> read_ticks();
 
+    /// From now on; must outlive the device or be taken away with nullptr. Not while another thread uses the
+    /// device.
+    void listen(Listener* listener) { listener_ = listener; }
+
     /// Virtual clock only.
     Status step(std::uint32_t ticks);
+    /// Virtual clock only: runs another machine's tick again, as phantom_um_replay() says. False: the run is
+    /// over here. Its set is submitted before with submit_as(), which keeps header.id.
+    Result<bool> replay(const phantom_tick& record, std::uint64_t due_ns);
+    Status set_time(std::uint64_t now_ns);
+    Status submit_as(PatchSet& set);
     /// "SCHED_FIFO, CPU 1", or why not; for reports. Empty for the kernel.
     [[nodiscard]] std::string thread_text() const;
 
@@ -84,9 +105,16 @@ class Device {
     explicit Device(std::unique_ptr<Transport> transport);
     static Result<Device> greet(std::unique_ptr<Transport> transport);
     std::unique_ptr<Transport> transport_;
+    /// SUBMIT_SET with header.id as it is: 0 or -errno.
+    int call_submit(PatchSet& set);
     phantom_info info_{};
     std::uint64_t last_set_id_ = 0;
+    Listener* listener_ = nullptr;
 };
+
+/// The nodes that the module has, by number: /dev/phantom_rt0, ... At least PHANTOM_DEVICE_NODE, there or
+/// not.
+std::vector<std::string> kernel_nodes(const std::filesystem::path& devices = "/sys/class/phantom_rt");
 
 /// Durations behind a histogram: value below which `fraction` of the counts lie, in ns (upper end of the
 /// bucket).

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The kernel's module: system calls on /dev/phantom_rt0. Nothing else in the project makes them.
 #include <fcntl.h>
+#include <grp.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -52,6 +55,8 @@ struct Device::KernelTransport final : Device::Transport {
     }
     const phantom_status* page() const override { return static_cast<const phantom_status*>(page_); }
     int step(std::uint32_t) override { return -EINVAL; }
+    int replay(const phantom_tick&, std::uint64_t) override { return -EINVAL; }
+    int set_time(std::uint64_t) override { return -EINVAL; }
     bool is_kernel() const override { return true; }
     bool has_virtual_clock() const override { return false; }
     const std::string& name() const override { return node_; }
@@ -66,17 +71,36 @@ struct Device::KernelTransport final : Device::Transport {
 
 namespace {
 
+constexpr const char* node_prefix = "phantom_rt";
+
+/// What gives this user the right to open the node.
+std::string permission_remedy(const std::string& node)
+{
+    struct stat status {};
+    const bool known = ::stat(node.c_str(), &status) == 0;
+    const struct group* group = known && status.st_gid != 0 ? ::getgrgid(status.st_gid) : nullptr;
+    if (group && (status.st_mode & S_IRGRP) != 0)
+        return fmt::format("it belongs to group {}: sudo usermod -aG {} $USER, then log in again",
+                           group->gr_name, group->gr_name);
+    return R"(a udev rule gives it: KERNEL=="phantom_rt*", GROUP="plugdev", MODE="0660")";
+}
+
 Error open_failed(const std::string& node, int error)
 {
     switch (error) {
     case ENOENT:
     case ENXIO:
-        return {node, "there is no such device: the module phantom_rt is not loaded"};
+        if (std::filesystem::exists("/sys/module/phantom_rt"))
+            return {node,
+                    "there is no such device: the module phantom_rt is loaded and has none of that name",
+                    "fdhctl devices lists them"};
+        return {node, "there is no such device: the module phantom_rt is not loaded",
+                "sudo insmod phantom_rt.ko; make modules builds it"};
     case EACCES:
     case EPERM:
-        return {node, "no permission to open the device", "a udev rule or membership of its group gives it"};
+        return {node, "no permission to open the device", permission_remedy(node)};
     case EBUSY:
-        return {node, "another program feeds the device already"};
+        return {node, "another program feeds the device already", "fdhctl stop ends a session of fdhctl"};
     case ENODEV:
         return {node, "the device is gone (unplugged)"};
     default:
@@ -86,8 +110,31 @@ Error open_failed(const std::string& node, int error)
 
 } // namespace
 
-Result<Device> Device::open_kernel(Access access, const std::string& node)
+std::vector<std::string> kernel_nodes(const std::filesystem::path& devices)
 {
+    const std::string prefix = node_prefix;
+    std::vector<unsigned long> numbers;
+    std::error_code code;
+    for (const auto& entry : std::filesystem::directory_iterator(devices, code)) {
+        const std::string name = entry.path().filename().string();
+        const std::string digits = name.starts_with(prefix) ? name.substr(prefix.size()) : "";
+        if (!digits.empty() && digits.size() < 9 &&
+            digits.find_first_not_of("0123456789") == std::string::npos)
+            numbers.push_back(std::stoul(digits));
+    }
+    std::sort(numbers.begin(), numbers.end());
+    std::vector<std::string> nodes;
+    for (const unsigned long number : numbers)
+        nodes.push_back(fmt::format("/dev/{}{}", prefix, number));
+    if (nodes.empty())
+        nodes.emplace_back(PHANTOM_DEVICE_NODE);
+    return nodes;
+}
+
+Result<Device> Device::open_kernel(Access access, std::string node)
+{
+    if (node.empty())
+        node = kernel_nodes().front();
     const int flags = (access == Access::feeder ? O_RDWR : O_RDONLY) | O_NONBLOCK | O_CLOEXEC;
     const int fd = ::open(node.c_str(), flags);
     if (fd < 0)

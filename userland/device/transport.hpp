@@ -21,6 +21,8 @@ struct Device::Transport {
     /// The mapped status page; valid as long as the transport.
     [[nodiscard]] virtual const phantom_status* page() const = 0;
     virtual int step(std::uint32_t ticks) = 0;
+    virtual int replay(const phantom_tick& record, std::uint64_t due_ns) = 0;
+    virtual int set_time(std::uint64_t now_ns) = 0;
 
     [[nodiscard]] virtual bool is_kernel() const = 0;
     [[nodiscard]] virtual bool has_virtual_clock() const = 0;

@@ -45,6 +45,11 @@ struct Device::UsermodeTransport final : Device::Transport {
     int poll(short events, int timeout_ms) override { return phantom_um_poll(file_, events, timeout_ms); }
     const phantom_status* page() const override { return page_; }
     int step(std::uint32_t ticks) override { return phantom_um_step(machine_, ticks); }
+    int replay(const phantom_tick& record, std::uint64_t due_ns) override
+    {
+        return phantom_um_replay(machine_, &record, due_ns);
+    }
+    int set_time(std::uint64_t now_ns) override { return phantom_um_set_time(machine_, now_ns); }
     bool is_kernel() const override { return false; }
     bool has_virtual_clock() const override { return virtual_clock_; }
     const std::string& name() const override { return name_; }

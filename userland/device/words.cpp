@@ -25,11 +25,9 @@ constexpr Word proxies[] = {
     {"paper", PHANTOM_PROXY_PAPER}, {"constrained", PHANTOM_PROXY_CONSTRAINED}, {"off", PHANTOM_PROXY_OFF}};
 constexpr Word ariths[] = {
     {"float", PHANTOM_ARITH_FLOAT}, {"fixed", PHANTOM_ARITH_FIXED}, {"double", PHANTOM_ARITH_DOUBLE}};
-constexpr Word faults[] = {{"device", PHANTOM_FAULT_DEVICE},
-                           {"overspeed", PHANTOM_FAULT_OVERSPEED},
-                           {"stall", PHANTOM_FAULT_STALL},
-                           {"numeric", PHANTOM_FAULT_NUMERIC},
-                           {"unplugged", PHANTOM_FAULT_UNPLUGGED}};
+constexpr Word faults[] = {{"device", PHANTOM_FAULT_DEVICE},       {"overspeed", PHANTOM_FAULT_OVERSPEED},
+                           {"stall", PHANTOM_FAULT_STALL},         {"numeric", PHANTOM_FAULT_NUMERIC},
+                           {"unplugged", PHANTOM_FAULT_UNPLUGGED}, {"suspended", PHANTOM_FAULT_SUSPENDED}};
 
 Result<std::uint32_t> number_of(const char* what, const std::string& text, std::span<const Word> words)
 {

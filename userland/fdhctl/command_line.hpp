@@ -33,6 +33,8 @@ Run add_load(CLI::App& app);
 Run add_model(CLI::App& app);
 Run add_prepare(CLI::App& app);
 Run add_rate(CLI::App& app);
+Run add_record(CLI::App& app);
+Run add_replay(CLI::App& app);
 Run add_status(CLI::App& app);
 Run add_stop(CLI::App& app);
 Run add_stroke(CLI::App& app);
@@ -83,6 +85,9 @@ struct BudgetOptions {
     void add(CLI::App& app, bool allow_all);
     void apply(feeder::FeederOptions& options) const;
 };
+
+/// --device: NODE of the kernel's device, empty for the first there is.
+void add_device_option(CLI::App& app, std::string& node);
 
 /// A line to the running session; the answer, or its refusal as an Error.
 Result<std::string> ask_session(const std::string& request);

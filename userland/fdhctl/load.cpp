@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "base/progress_bar.hpp"
 #include "fdhctl/background.hpp"
 #include "fdhctl/command_line.hpp"
+#include "fdhctl/end_signals.hpp"
 #include "fdhctl/touch_record.hpp"
 #include "fdhctl/touch_summary.hpp"
 #include "fdhctl/view.hpp"
@@ -40,29 +40,6 @@ struct Options {
 
 /// Records are read this often; the module's ring holds far more.
 constexpr std::chrono::milliseconds collect_period{20};
-
-/// SIGINT, SIGTERM and SIGHUP, blocked in every thread made from now on and waited for in this one.
-class EndSignals {
-  public:
-    EndSignals()
-    {
-        sigemptyset(&set_);
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-            sigaddset(&set_, signal);
-        pthread_sigmask(SIG_BLOCK, &set_, nullptr);
-        std::signal(SIGPIPE, SIG_IGN);
-    }
-    /// True when one came within the time.
-    bool wait(std::chrono::milliseconds time) const
-    {
-        const timespec limit{static_cast<time_t>(time.count() / 1000),
-                             static_cast<long>(time.count() % 1000 * 1000000)};
-        return sigtimedwait(&set_, nullptr, &limit) > 0;
-    }
-
-  private:
-    sigset_t set_{};
-};
 
 /// The live status: rewritten in place on a terminal, a line a second elsewhere.
 class StatusLine {
@@ -111,6 +88,12 @@ feeder::SessionOptions session_options(const Options& options, const feeder::Pat
     return session;
 }
 
+Status collect(feeder::Session& session, TouchRecord& record)
+{
+    return record.collect(session.device(),
+                          [&session](std::uint64_t set_id) { return session.feeder().query_us(set_id); });
+}
+
 /// Why the touch ended before its time; nothing when it did not.
 using Trouble = std::optional<Error>;
 
@@ -122,7 +105,7 @@ Trouble touch(const Options& options, feeder::Session& session, const EndSignals
     const auto begin = Clock::now();
     Trouble trouble;
     while (!trouble && !signals.wait(collect_period) && !session.stop_requested()) {
-        if (Status status = record.collect(session); !status)
+        if (Status status = collect(session, record); !status)
             trouble = status.error();
         else if (!session.running())
             trouble = session.failure();
@@ -163,16 +146,15 @@ int run_touch(const Options& options, Background& background)
             return fail(read.error());
         path = std::move(*read);
     }
-    std::optional<OutputFile> trace;
+    std::optional<TickFile> ticks;
     if (!options.record.empty()) {
-        Result<OutputFile> file = OutputFile::open(options.record);
+        Result<TickFile> file = TickFile::open(options.record);
         if (!file)
             return fail(file.error());
-        trace.emplace(std::move(*file));
+        ticks.emplace(std::move(*file));
     }
-    TouchRecord record(std::move(trace));
-    if (Status status = record.begin(); !status)
-        return fail(status.error());
+    // Before the session: it listens to the session's device as long as that lives.
+    TouchRecord record(std::move(ticks));
 
     Result<feeder::Session> session = [&] {
         ProgressBar bar("preparing");
@@ -183,6 +165,8 @@ int run_touch(const Options& options, Background& background)
     print_warnings(session->scene());
     if (!path.empty() && session->device().info().device != PHANTOM_DEVICE_SIM)
         return fail({options.path, "only a simulated device can be driven along a path", "--usermode"});
+    if (Status status = record.begin(session->device(), true, options.scene.scene); !status)
+        return fail(status.error());
     if (Status status = session->start(); !status)
         return fail(status.error());
     std::fprintf(options.json ? stderr : stdout, "first force after %.2f s: %u Hz, %s%s%s\n",
@@ -202,9 +186,10 @@ int run_touch(const Options& options, Background& background)
     player.reset();
     if (Status status = session->stop(); !status && !trouble)
         trouble = status.error();
-    if (Status status = record.collect(*session); !status && !trouble)
+    if (Status status = collect(*session, record); !status && !trouble)
         trouble = status.error();
     summary.touched = record.totals();
+    summary.recorded = record.file_text();
     if (Status status = record.commit(); !status && !trouble)
         trouble = status.error();
     if (Status status = write_summary(options, summary); !status && !trouble)
@@ -257,8 +242,11 @@ Run add_load(CLI::App& app)
     app.add_option("--path", options->path, "drive the simulated device along this path, then end")
         ->type_name("P.csv")
         ->excludes(view);
-    app.add_option("--record", options->record, "a trace of every tick, written whole or not at all")
-        ->type_name("T.csv")
+    app.add_option("--record", options->record,
+                   "every tick: as a trace (CSV), written whole or not at all; as FILE.rec with all that it "
+                   "came from, "
+                   "for fdhctl replay")
+        ->type_name("T.csv|FILE.rec")
         ->excludes(view);
     app.add_option("--seconds", options->seconds, "end after this time")->check(positive())->type_name("S");
     app.add_option("--summary", options->summary, "the closing summary as a JSON file")

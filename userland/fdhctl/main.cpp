@@ -23,6 +23,8 @@ constexpr Command commands[] = {
     {"prepare", "the preprocessing alone, with its report", add_prepare},
     {"stroke", "make a path over a scene's surface for the simulated device", add_stroke},
     {"trace", "the module's code on a virtual clock, one tick per row of a path", add_trace},
+    {"record", "write down the ticks of a device that somebody else feeds", add_record},
+    {"replay", "compute a recording again and compare every tick, bit for bit", add_replay},
     {"bench", "query and tick times of a scene", add_bench},
     {"devices", "what can be driven here, and how", add_devices},
     {"view", "see and touch a scene in a window (fdhview)", add_view},

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "feeder/trace_file.hpp"
-
 namespace phantom::fdhctl {
 
-Status TouchRecord::begin()
+Status TouchRecord::begin(device::Device& device, bool fed, const std::string& scene)
 {
-    return trace_ ? trace_->append(std::string(feeder::trace_header) + "\n") : success();
+    return file_ ? file_->begin(device, fed, scene) : success();
 }
 
 void TouchRecord::count(const phantom_tick& tick)
@@ -27,37 +25,27 @@ void TouchRecord::count(const phantom_tick& tick)
     totals_.force_max_n = std::max(totals_.force_max_n, force_un * 1e-6);
 }
 
-Status TouchRecord::collect(feeder::Session& session)
+Status TouchRecord::collect(device::Device& device, const TickFile::QueryTime& query_us)
 {
-    std::string text;
     for (;;) {
-        Result<std::vector<phantom_tick>> ticks = session.device().read_ticks();
+        // The page first: whatever it counts has been recorded before.
+        const phantom_status before = device.status();
+        const Result<std::vector<phantom_tick>> ticks = device.read_ticks();
         if (!ticks)
             return ticks.error();
-        if (ticks->empty())
-            break;
-        const feeder::FeedReport fed = session.feeder().last();
-        for (const phantom_tick& tick : *ticks) {
-            if (totals_.ticks == 0)
-                first_ns_ = tick.time_ns;
+        for (const phantom_tick& tick : *ticks)
             count(tick);
-            if (!trace_)
-                continue;
-            feeder::TraceRow row =
-                feeder::trace_row(tick, static_cast<double>(tick.time_ns - first_ns_) * 1e-9);
-            // A query's time stands once, where its set is used first; older ones are not known any more.
-            if (tick.set_id != last_set_ && tick.set_id == fed.set_id)
-                row.query_us = fed.query_us;
-            last_set_ = tick.set_id;
-            feeder::append_trace_row(text, row);
-        }
+        if (file_)
+            if (Status status = file_->append(*ticks, before, query_us); !status)
+                return status;
+        if (ticks->empty())
+            return success();
     }
-    return trace_ && !text.empty() ? trace_->append(text) : success();
 }
 
 Status TouchRecord::commit()
 {
-    return trace_ ? trace_->commit() : success();
+    return file_ ? file_->commit() : success();
 }
 
 } // namespace phantom::fdhctl

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What `fdhctl load` learns from the servo's records: totals, and a trace file if one is wanted.
+// What is learnt from a servo's records while it runs: totals, and a file of the ticks if one is wanted.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "base/output_file.hpp"
-#include "feeder/session.hpp"
+#include "fdhctl/tick_file.hpp"
 
 namespace phantom::fdhctl {
 
@@ -18,23 +17,23 @@ class TouchRecord {
         double force_max_n = 0;
     };
 
-    /// trace: its file, or nothing.
-    explicit TouchRecord(std::optional<OutputFile> trace) : trace_(std::move(trace)) {}
+    /// file: where the ticks go, or nothing.
+    explicit TouchRecord(std::optional<TickFile> file) : file_(std::move(file)) {}
 
-    Status begin();
+    /// As TickFile::begin().
+    Status begin(device::Device& device, bool fed, const std::string& scene);
     /// Reads what the servo recorded since the last call.
-    Status collect(feeder::Session& session);
+    Status collect(device::Device& device, const TickFile::QueryTime& query_us);
     Status commit();
     [[nodiscard]] const Totals& totals() const { return totals_; }
+    [[nodiscard]] std::string file_text() const { return file_ ? file_->text() : std::string(); }
 
   private:
     void count(const phantom_tick& tick);
 
-    std::optional<OutputFile> trace_;
+    std::optional<TickFile> file_;
     Totals totals_;
-    std::uint64_t first_ns_ = 0;
     std::uint64_t last_tick_ = 0;
-    std::uint64_t last_set_ = 0;
 };
 
 } // namespace phantom::fdhctl

@@ -95,6 +95,8 @@ std::string TouchSummary::text() const
     add("load",
         fmt::format("first force after {:.0f} ms: read and prepared {:.0f}, hierarchy {:.0f}",
                     number(load["first_force"]), number(load["read_and_prepare"]), number(load["build"])));
+    if (!recorded.empty())
+        add("recorded", recorded);
     if (path_late_s > 0.001)
         add("path", fmt::format("{:.3f} s late: the computer was busy elsewhere", path_late_s));
     if (touched.lost)

@@ -15,6 +15,7 @@ class TouchSummary {
   public:
     TouchRecord::Totals touched;
     double path_late_s = 0; ///< by how much a path ran late
+    std::string recorded;   ///< what a recording holds, in words
 
     /// Before the servo stops: what it did in the `seconds` since its start.
     void take(feeder::Session& session, double seconds);

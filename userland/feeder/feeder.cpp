@@ -31,6 +31,9 @@ constexpr int early_rounds_max = 4;
 /// How many samples Feeder::Totals keeps.
 constexpr std::size_t samples_max = 65536;
 
+/// How many sets' query times are kept.
+constexpr std::size_t query_times_max = 4096;
+
 /// The servo takes a set within a tick. On top of the need, as a fraction of R.
 constexpr double margin_of_radius = 0.05;
 
@@ -143,6 +146,7 @@ struct Feeder::Impl {
         const std::lock_guard lock(mutex);
         ++totals.sets;
         query_us.add(report.query_us);
+        query_times[report.set_id % query_times_max] = {report.set_id, report.query_us};
         if (last_time != Clock::time_point{})
             interval_ms.add(microseconds(now - last_time) * 1e-3);
         last_time = now;
@@ -164,6 +168,11 @@ struct Feeder::Impl {
     mutable std::mutex mutex; ///< protects what follows
     Totals totals;
     Samples query_us, interval_ms;
+    struct QueryTime {
+        std::uint64_t set_id = 0;
+        double us = 0;
+    };
+    std::vector<QueryTime> query_times = std::vector<QueryTime>(query_times_max); ///< at set_id % size
     Clock::time_point last_time{};
     FeedReport last;
 };
@@ -252,6 +261,13 @@ Feeder::Totals Feeder::totals() const
     totals.query_us = impl_->query_us.values;
     totals.interval_ms = impl_->interval_ms.values;
     return totals;
+}
+
+double Feeder::query_us(std::uint64_t set_id) const
+{
+    const std::lock_guard lock(impl_->mutex);
+    const Impl::QueryTime& time = impl_->query_times[set_id % query_times_max];
+    return time.set_id == set_id ? time.us : 0.0;
 }
 
 FeedReport Feeder::last() const

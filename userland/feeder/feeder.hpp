@@ -72,7 +72,7 @@ class SetBuilder {
 /// (1 m) go, and with `all` the whole scene must lie within them.
 Status check_reach(const scene::Scene& scene, const FeederOptions& options);
 
-/// One feeder per device. Not thread-safe but for totals() and last().
+/// One feeder per device. Not thread-safe but for totals(), last() and query_us().
 class Feeder {
   public:
     Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device::Device& device,
@@ -94,6 +94,8 @@ class Feeder {
     [[nodiscard]] Totals totals() const;
     /// The latest report, for a viewer in another thread.
     [[nodiscard]] FeedReport last() const;
+    /// What the query for that set took, of the last 4096 sets; 0 when not known.
+    [[nodiscard]] double query_us(std::uint64_t set_id) const;
 
   private:
     struct Impl;

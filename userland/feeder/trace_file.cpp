@@ -20,7 +20,9 @@ TraceRow trace_row(const phantom_tick& tick, double time_s)
             row.inside ? static_cast<double>(tick.proxy_nm[axis]) * mm_per_nm : row.tip_mm[axis];
     }
     row.contacts = tick.contacts;
-    row.set_id = tick.set_id;
+    const bool off = tick.model % 16 == PHANTOM_MODEL_OFF;
+    const bool from_set = !off && (tick.flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) == 0;
+    row.set_id = from_set ? tick.set_id : 0;
     row.tick_ns = tick.duration_ns;
     row.flags = tick.flags;
     return row;

@@ -80,6 +80,8 @@ void time_float_ticks(const phantom_float_ops& ops, const phantom_model& model, 
     job.set = floats.get();
     job.model = model;
     job.proxy_face = PHANTOM_PATCH_NONE;
+    std::copy_n(set.header.centre_nm, 3, job.centre_nm);
+    job.radius_nm = set.header.radius_nm;
     for (const Vec3& tip : tips) {
         const std::array<std::int64_t, 3> tip_nm = feeder::to_nanometres(tip);
         for (int axis = 0; axis < 3; ++axis) {
