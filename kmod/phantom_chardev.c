@@ -10,6 +10,34 @@ void phantom_chardev_init(struct phantom_chardev *chardev, struct phantom_servo 
 {
 	chardev->servo = servo;
 	chardev->feeder = NULL;
+	chardev->gone = 0;
+}
+
+static bool phantom_chardev_gone(const struct phantom_chardev *chardev)
+{
+	return READ_ONCE(chardev->gone);
+}
+
+void phantom_chardev_unplug(struct phantom_chardev *chardev)
+{
+	WRITE_ONCE(chardev->gone, 1);
+	phantom_servo_unplug(chardev->servo);
+}
+
+int phantom_chardev_calibrate(struct phantom_chardev *chardev)
+{
+	struct phantom_servo *servo = chardev->servo;
+	int error;
+
+	if (!servo->device || !servo->device->ops->calibrate)
+		return -EOPNOTSUPP;
+	mutex_lock(&servo->control);
+	if (READ_ONCE(servo->state) != PHANTOM_STATE_IDLE)
+		error = -EBUSY;
+	else
+		error = servo->device->ops->calibrate(servo->device);
+	mutex_unlock(&servo->control);
+	return error;
 }
 
 struct phantom_file *phantom_chardev_open(struct phantom_chardev *chardev, bool feeding)
@@ -18,6 +46,8 @@ struct phantom_file *phantom_chardev_open(struct phantom_chardev *chardev, bool 
 	struct phantom_file *file;
 
 	phantom_context_file(servo);
+	if (phantom_chardev_gone(chardev))
+		return ERR_PTR(-ENODEV);
 	file = kzalloc(sizeof(*file), GFP_KERNEL);
 	if (!file)
 		return ERR_PTR(-ENOMEM);
@@ -187,6 +217,8 @@ long phantom_chardev_ioctl(struct phantom_file *file, unsigned int command, void
 	size_t i;
 
 	phantom_context_file(servo);
+	if (phantom_chardev_gone(file->chardev))
+		return -ENODEV;
 	for (i = 0; i < ARRAY_SIZE(phantom_chardev_commands); i++) {
 		entry = &phantom_chardev_commands[i];
 		if (entry->number != command)
@@ -210,9 +242,12 @@ static bool phantom_chardev_has_records(const struct phantom_file *file)
 	return phantom_stats_head(&file->chardev->servo->stats) > READ_ONCE(file->cursor);
 }
 
-static bool phantom_chardev_idle(const struct phantom_file *file)
+/* No record will come: there is no run, or it has ended by itself because the device is gone. */
+static bool phantom_chardev_over(const struct phantom_file *file)
 {
-	return READ_ONCE(file->chardev->servo->state) == PHANTOM_STATE_IDLE;
+	const struct phantom_servo *servo = file->chardev->servo;
+
+	return READ_ONCE(servo->state) == PHANTOM_STATE_IDLE || smp_load_acquire(&servo->ended);
 }
 
 /* As many whole records as there are and fit. Bytes, or -EFAULT when not one could be copied. */
@@ -247,7 +282,7 @@ ssize_t phantom_chardev_read(struct phantom_file *file, char __user *buffer, siz
 	for (;;) {
 		/* the state first: records that come before its end are not lost */
 		u32 runs = READ_ONCE(servo->runs);
-		bool idle = phantom_chardev_idle(file);
+		bool over = phantom_chardev_over(file);
 
 		smp_rmb();
 		mutex_lock(&file->reading);
@@ -255,14 +290,16 @@ ssize_t phantom_chardev_read(struct phantom_file *file, char __user *buffer, siz
 		mutex_unlock(&file->reading);
 		if (done)
 			return done;
-		if (idle) {
+		if (over && phantom_chardev_gone(file->chardev))
+			return -ENODEV;
+		if (over) {
 			WRITE_ONCE(file->runs_told, runs);
 			return 0;
 		}
 		if (nonblocking)
 			return -EAGAIN;
 		if (wait_event_interruptible(servo->wait, phantom_chardev_has_records(file) ||
-								  phantom_chardev_idle(file)))
+								  phantom_chardev_over(file)))
 			return -ERESTARTSYS;
 	}
 }
@@ -277,12 +314,16 @@ __poll_t phantom_chardev_poll(struct phantom_file *file)
 		mask |= EPOLLIN | EPOLLRDNORM;
 	if (READ_ONCE(servo->events) != READ_ONCE(file->events_told))
 		mask |= EPOLLPRI;
+	if (phantom_chardev_gone(file->chardev))
+		mask |= EPOLLHUP | EPOLLERR;
 	return mask;
 }
 
 int phantom_chardev_check_mmap(const struct phantom_file *file, bool write_or_execute, u64 offset,
 			       u64 size)
 {
+	if (phantom_chardev_gone(file->chardev))
+		return -ENODEV;
 	if (write_or_execute)
 		return -EPERM;
 	return offset || size > phantom_stats_page_size() ? -EINVAL : 0;

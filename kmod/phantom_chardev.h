@@ -15,6 +15,7 @@
 struct phantom_chardev {
 	struct phantom_servo *servo; /* fixed */
 	struct phantom_file *feeder; /* under servo->control */
+	u32 gone; /* the device was unplugged, for good; one word */
 };
 
 struct phantom_file {
@@ -28,15 +29,28 @@ struct phantom_file {
 
 void phantom_chardev_init(struct phantom_chardev *chardev, struct phantom_servo *servo);
 
+/*
+ * The device is gone for good. From here on every call answers -ENODEV (read after the records that
+ * are left), waiting ones return, poll tells EPOLLHUP | EPOLLERR, a running servo latches
+ * PHANTOM_FAULT_UNPLUGGED and ends. Mappings and close go on as before. Any context that may sleep;
+ * waits for nobody.
+ */
+void phantom_chardev_unplug(struct phantom_chardev *chardev);
+/*
+ * The arm rests in its rest pose: tells its encoders. 0, -EBUSY while the servo runs, -ENODEV,
+ * -EOPNOTSUPP for a device without joints. Sleeps.
+ */
+int phantom_chardev_calibrate(struct phantom_chardev *chardev);
+
 struct phantom_file *phantom_chardev_open(struct phantom_chardev *chardev, bool feeding);
 /* The feeder's: ramps to zero, then forgets sets and contact. Sleeps. */
 void phantom_chardev_release(struct phantom_file *file);
 long phantom_chardev_ioctl(struct phantom_file *file, unsigned int command, void __user *argument);
 ssize_t phantom_chardev_read(struct phantom_file *file, char __user *buffer, size_t size,
 			     bool nonblocking);
-/* EPOLLIN | EPOLLRDNORM and EPOLLPRI; the caller waits on chardev->servo->wait. Any context. */
+/* EPOLLIN | EPOLLRDNORM, EPOLLPRI, EPOLLHUP | EPOLLERR; the caller waits on chardev->servo->wait. Any context. */
 __poll_t phantom_chardev_poll(struct phantom_file *file);
-/* 0, -EPERM or -EINVAL for a mapping of so many bytes at that offset. */
+/* 0, -ENODEV, -EPERM or -EINVAL for a mapping of so many bytes at that offset. */
 int phantom_chardev_check_mmap(const struct phantom_file *file, bool write_or_execute, u64 offset,
 			       u64 size);
 

@@ -115,6 +115,7 @@ static void phantom_control_reset(struct phantom_servo *servo)
 	servo->warned = false;
 	servo->stop_wanted = 0;
 	servo->clear_wanted = 0;
+	WRITE_ONCE(servo->ended, 0);
 	WRITE_ONCE(servo->causes, 0);
 }
 
@@ -346,4 +347,10 @@ void phantom_servo_forget(struct phantom_servo *servo)
 	next->set_level = 0;
 	next->set_level_error_nm = 0;
 	phantom_stats_publish(&servo->stats);
+}
+
+void phantom_servo_unplug(struct phantom_servo *servo)
+{
+	WRITE_ONCE(servo->unplugged, 1);
+	phantom_control_wake(servo);
 }

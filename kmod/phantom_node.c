@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * phantom_node.c - /dev/phantom_rt0: file operations around phantom_chardev.c.
+ * phantom_node.c - /dev/phantom_rtN: file operations around phantom_chardev.c.
  */
 #include <phantom_platform.h>
 #include "phantom_kernel.h"
 
-/* misc_open() has put its miscdevice here. */
-static struct phantom_node *phantom_node_of(struct file *filp)
-{
-	struct miscdevice *misc = filp->private_data;
-
-	return container_of(misc, struct phantom_node, misc);
-}
-
+/* While a file is open its cdev, and so the unit, is held by the VFS. */
 static int phantom_node_open(struct inode *inode, struct file *filp)
 {
-	struct phantom_node *node = phantom_node_of(filp);
-	struct phantom_file *file = phantom_chardev_open(node->chardev, filp->f_mode & FMODE_WRITE);
+	struct phantom_unit *unit = container_of(inode->i_cdev, struct phantom_unit, cdev);
+	struct phantom_file *file =
+		phantom_chardev_open(&unit->chardev, filp->f_mode & FMODE_WRITE);
 
 	if (IS_ERR(file))
 		return PTR_ERR(file);
@@ -63,7 +57,7 @@ static int phantom_node_mmap(struct file *filp, struct vm_area_struct *vma)
 	return remap_vmalloc_range(vma, file->chardev->servo->stats.page, 0);
 }
 
-static const struct file_operations phantom_node_operations = {
+const struct file_operations phantom_node_operations = {
 	.owner = THIS_MODULE,
 	.open = phantom_node_open,
 	.release = phantom_node_release,
@@ -73,18 +67,3 @@ static const struct file_operations phantom_node_operations = {
 	.poll = phantom_node_poll,
 	.mmap = phantom_node_mmap,
 };
-
-int phantom_node_register(struct phantom_node *node, struct phantom_chardev *chardev)
-{
-	node->chardev = chardev;
-	node->misc.minor = MISC_DYNAMIC_MINOR;
-	node->misc.name = "phantom_rt0";
-	node->misc.fops = &phantom_node_operations;
-	node->misc.mode = 0660;
-	return misc_register(&node->misc);
-}
-
-void phantom_node_unregister(struct phantom_node *node)
-{
-	misc_deregister(&node->misc);
-}

@@ -41,24 +41,63 @@ static u64 phantom_servo_now(const struct phantom_servo *servo)
 
 /* ---- float sections ------------------------------------------------------ */
 
-/* Servo thread. */
-static void phantom_servo_float_tick(struct phantom_servo *servo,
-				     const struct phantom_float_ops *ops)
+/* Sections of the tick. Servo thread. Between the two: one call into float/. */
+static u64 phantom_servo_open_section(struct phantom_servo *servo)
 {
-	struct phantom_stats *stats = &servo->stats;
-	u64 begin, length;
+	u64 begin;
 
 	phantom_context_servo(servo);
 	begin = phantom_servo_now(servo);
 	kernel_fpu_begin();
 	phantom_context_section();
-	ops->tick(&servo->job);
+	return begin;
+}
+
+static void phantom_servo_close_section(struct phantom_servo *servo, u64 begin)
+{
+	struct phantom_stats *stats = &servo->stats;
+	u64 length;
+
 	kernel_fpu_end();
 	length = phantom_servo_now(servo) - begin;
 	phantom_stats_count(&stats->page->section, length);
 	stats->next.sections++;
 	stats->next.section_max_ns =
 		max_t(u64, stats->next.section_max_ns, min_t(u64, length, U32_MAX));
+}
+
+static void phantom_servo_float_tick(struct phantom_servo *servo,
+				     const struct phantom_float_ops *ops)
+{
+	u64 begin = phantom_servo_open_section(servo);
+
+	ops->tick(&servo->job);
+	phantom_servo_close_section(servo, begin);
+}
+
+/* A device with joints: where its encoders say that the tip is. */
+static void phantom_servo_float_pose(struct phantom_servo *servo, struct phantom_linkage *linkage,
+				     s64 tip_nm[3])
+{
+	u64 begin = phantom_servo_open_section(servo);
+	int axis;
+
+	linkage->ops->pose(linkage);
+	phantom_servo_close_section(servo, begin);
+	for (axis = 0; axis < 3; axis++)
+		tip_nm[axis] = linkage->tip_nm[axis];
+}
+
+/* A device with joints: the motor currents that give this force there. */
+static void phantom_servo_float_drive(struct phantom_servo *servo, struct phantom_linkage *linkage,
+				      const s32 force_un[3])
+{
+	u64 begin;
+
+	memcpy(linkage->force_un, force_un, sizeof(linkage->force_un));
+	begin = phantom_servo_open_section(servo);
+	linkage->ops->drive(linkage);
+	phantom_servo_close_section(servo, begin);
 }
 
 void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot)
@@ -241,11 +280,30 @@ static u32 phantom_servo_device_fault(int error)
 	return error == -ENODEV ? PHANTOM_FAULT_UNPLUGGED : PHANTOM_FAULT_DEVICE;
 }
 
+static int phantom_servo_read(struct phantom_servo *servo, s64 tip_nm[3])
+{
+	struct phantom_device *device = servo->device;
+	int error = READ_ONCE(servo->unplugged) ? -ENODEV : device->ops->read(device, tip_nm);
+
+	if (!error && device->linkage)
+		phantom_servo_float_pose(servo, device->linkage, tip_nm);
+	return error;
+}
+
+static int phantom_servo_write(struct phantom_servo *servo, const s32 force_un[3])
+{
+	struct phantom_device *device = servo->device;
+
+	if (device->linkage)
+		phantom_servo_float_drive(servo, device->linkage, force_un);
+	return device->ops->write(device, force_un);
+}
+
 static void phantom_servo_sense(struct phantom_servo *servo, struct phantom_pass *pass)
 {
 	struct phantom_safety *safety = &servo->safety;
 	s64 tip_nm[3];
-	int error = servo->device->ops->read(servo->device, tip_nm);
+	int error = phantom_servo_read(servo, tip_nm);
 	int axis;
 
 	if (error) {
@@ -282,7 +340,7 @@ static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *
 	}
 	pass->flags |= phantom_safety_apply(safety, pass->target_un, pass->elapsed_ns,
 					    pass->period_ns, pass->force_un);
-	error = servo->device->ops->write(servo->device, pass->force_un);
+	error = phantom_servo_write(servo, pass->force_un);
 	if (error) {
 		phantom_safety_raise(safety, phantom_servo_device_fault(error));
 		pass->flags |= PHANTOM_TICK_UNSENT;
@@ -431,6 +489,12 @@ bool phantom_servo_step(struct phantom_servo *servo)
 		servo->next_ns += skipped * period;
 		next->tick += skipped;
 		next->missed += skipped;
+	}
+	if ((servo->safety.causes & PHANTOM_FAULT_UNPLUGGED) && READ_ONCE(servo->unplugged)) {
+		smp_store_release(&servo->ended, 1); /* after the last record */
+		if (wq_has_sleeper(&servo->wait))
+			wake_up_interruptible(&servo->wait);
+		return false;
 	}
 	return !phantom_safety_stopped(&servo->safety);
 }

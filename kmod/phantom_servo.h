@@ -89,6 +89,9 @@ struct phantom_servo {
 	/* word, submitter */
 	u32 prepare_max_ns; /* longest float section of a submission */
 
+	/* word, anyone, once */
+	u32 unplugged; /* the device is gone for good */
+
 	/* request */
 	u32 stop_wanted; /* 0 or PHANTOM_WISH_... */
 	u32 clear_wanted;
@@ -98,7 +101,7 @@ struct phantom_servo {
 	u32 state; /* PHANTOM_STATE_... */
 	u32 faults; /* latched */
 	u32 causes; /* of the last tick */
-	u32 ended; /* the run is over, the thread about to leave */
+	u32 ended; /* the run is over without STOP: unplugged. Release/acquire */
 	u32 events; /* counts what POLLPRI tells */
 	u32 runs; /* runs ended */
 
@@ -145,6 +148,11 @@ void phantom_servo_stop(struct phantom_servo *servo, u32 wish);
 int phantom_servo_clear_fault(struct phantom_servo *servo);
 int phantom_servo_set_rate(struct phantom_servo *servo, u32 rate_hz);
 int phantom_servo_set_model(struct phantom_servo *servo, const struct phantom_model *model);
+/*
+ * The device is gone for good: a run latches PHANTOM_FAULT_UNPLUGGED, sends zero and ends by itself;
+ * STOP or close still has to end it for control. Waiting readers and pollers wake. Any context.
+ */
+void phantom_servo_unplug(struct phantom_servo *servo);
 /* The feeder has gone: no set, no contact state. Not running. */
 void phantom_servo_forget(struct phantom_servo *servo);
 /*

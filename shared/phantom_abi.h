@@ -74,6 +74,13 @@
  *             set that does not help), and once a set when a tip outside has used up half of its
  *             slack, the radius less the largest contact radius. It stays until this file
  *             answers: SUBMIT_SET and CLEAR_FAULT of the feeder and read() of anyone do.
+ *   POLLHUP | POLLERR   the device was unplugged.
+ *
+ * UNPLUGGED
+ *   The node goes; files that are open stay. A run latches PHANTOM_FAULT_UNPLUGGED, its force is
+ *   zero, and it ends by itself, in state FAULT. Every call answers ENODEV, read() after the records
+ *   that are left; mappings can be read on and show the last tick. Close the file: the arm plugged
+ *   in again is a new device, under another number while the old one is held.
  *
  * RULES
  *   Fields are __u32, __s32, __u64 and __s64 only; sizes are multiples of 8, the same for 32
@@ -95,6 +102,7 @@
  *                 EINVAL   a force above the device's, ramp_ms > PHANTOM_RAMP_MAX_MS, unknown
  *                          flag, reserved not zero
  *                 ENODEV   there is no device
+ *                 ETIMEDOUT  the device does not answer
  *                 EPERM    PHANTOM_START_LIMITS_OFF on a device that is not simulated
  *   STOP          (none)   IDLE already: nothing to do, returns 0
  *   SUBMIT_SET    EINVAL   counts over the limits, an index out of range, id 0 or not larger
@@ -117,6 +125,7 @@
  *   read          EINVAL   the buffer is smaller than one record
  *                 EFAULT   not even one record could be written
  *                 EAGAIN   O_NONBLOCK and no record
+ *                 ENODEV   the device was unplugged, and no record is left
  *                 0        no record, and the tick is not running (end of recording)
  *                 Whole records, from open() on, each file at its own pace. A reader that lags by
  *                 more than some thousand loses the oldest.
@@ -129,7 +138,10 @@
 
 #define PHANTOM_ABI_VERSION 1
 
-/* The first node. phantom0 belongs to the mainline driver drivers/misc/phantom.c. */
+/*
+ * The first node; phantom_rt1 and so on are further devices. phantom0 belongs to the mainline driver
+ * drivers/misc/phantom.c.
+ */
 #define PHANTOM_DEVICE_NODE "/dev/phantom_rt0"
 
 /* ---- limits -------------------------------------------------------------- */

@@ -80,8 +80,9 @@ struct phantom_device *phantom_device_sim_create(u32 max_force_un)
 	if (!sim)
 		return ERR_PTR(-ENOMEM);
 	mutex_init(&sim->moving);
-	phantom_mailbox_init(&sim->tip);
+	phantom_mailbox_init(&sim->tip, sizeof(s64[3]));
 	sim->device.ops = &phantom_sim_ops;
+	sim->device.model = "simulated";
 	for (axis = 0; axis < 3; axis++) {
 		sim->device.workspace_min_nm[axis] = -PHANTOM_SIM_WORKSPACE_NM;
 		sim->device.workspace_max_nm[axis] = PHANTOM_SIM_WORKSPACE_NM;

@@ -174,6 +174,8 @@ void wake_up_interruptible(wait_queue_head_t *queue);
 
 typedef unsigned int __poll_t;
 #define EPOLLIN POLLIN
+#define EPOLLERR POLLERR
+#define EPOLLHUP POLLHUP
 #define EPOLLPRI POLLPRI
 #define EPOLLRDNORM POLLRDNORM
 
