@@ -16,13 +16,14 @@ using namespace phantom::hard;
 
 /// Faces, then the fans of their creases.
 std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, double stiffness,
-                                         double radius)
+                                         double radius, bool two_sided = false)
 {
     mesh::Soup soup;
     soup.vertices = shape.vertices;
     soup.faces = shape.faces;
     mesh::PrepareOptions options;
     options.crease_deg = crease_deg;
+    options.two_sided = two_sided;
     const auto prepared = mesh::prepare(std::move(soup), options, "test");
     EXPECT_TRUE(prepared.ok());
     const mesh::Mesh& mesh = prepared->mesh;
@@ -113,6 +114,37 @@ TEST(Fan, ATipOnItsWallsIsHeldOnce)
                         << fmt::format("{} model {} at {}", ops->name, model, fmt::join(p, " "));
                 }
             }
+        }
+    }
+}
+
+/// A sheet without thickness, touched from both sides: all round it, the exact distance.
+TEST(Fan, ATwoSidedSheetFeelsLikeItsExactDistance)
+{
+    const double radius = 2;
+    Shape sheet;
+    sheet.vertices = {{-5, -4, 0}, {5, -4, 0}, {5, 4, 0}, {-5, 4, 0}};
+    sheet.faces = {{0, 1, 2}, {0, 2, 3}};
+    const auto triangles = creased(sheet, 30, 1, radius, true);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(-1.3, 1.3), height(-1.9, 1.9);
+    for (const std::uint32_t model : {PHANTOM_MODEL_PAPER, PHANTOM_MODEL_PROJECTED}) {
+        for (const phantom_float_ops* ops : sections()) {
+            Contact contact(*ops, triangles, settings_of(model));
+            unsigned round_the_rim = 0;
+            for (int i = 0; i < 4000; ++i) {
+                const Vec3 p = on_grid({place(random) * 5, place(random) * 4, height(random)});
+                const Vec3 away{std::copysign(std::max(std::abs(p[0]) - 5, 0.0), p[0]),
+                                std::copysign(std::max(std::abs(p[1]) - 4, 0.0), p[1]), p[2]};
+                const double distance = length(away);
+                if (distance < 0.02 || distance > radius)
+                    continue;
+                round_the_rim += away[0] != 0 || away[1] != 0;
+                const Vec3 expected = scale(radius - distance, unit(away));
+                ASSERT_LE(length(subtract(contact.tick(p).force, expected)), 1e-4)
+                    << fmt::format("{} model {} at {}", ops->name, model, fmt::join(p, " "));
+            }
+            EXPECT_GT(round_the_rim, 300U);
         }
     }
 }

@@ -165,10 +165,16 @@ Vec3 middle_of(const Round& round)
     return length(round.outward) > least ? normalized(round.outward) : Vec3{0, 0, 0};
 }
 
+/// Without one that has no shell: two of its normals are the same.
+void add_corner_fan(std::uint32_t vertex, const Vec3& a, const Vec3& b, const Vec3& c, std::vector<Fan>& out)
+{
+    if (differ(a, b) && differ(b, c) && differ(c, a))
+        out.push_back({{vertex, vertex, vertex}, {a, b, c}});
+}
+
 /// A polygon of directions becomes triangles: one if it is small, else round its middle.
 void add_corner_fans(const Round& round, std::uint32_t vertex, std::vector<Fan>& out)
 {
-    const Triple corners{vertex, vertex, vertex};
     const std::vector<Vec3>& normals = round.normals;
     if (normals.size() < 3)
         return;
@@ -179,11 +185,11 @@ void add_corner_fans(const Round& round, std::uint32_t vertex, std::vector<Fan>&
     const Vec3 middle = middle_of(round);
     if ((count == 3 && widest <= arc_max) || middle == Vec3{0, 0, 0}) {
         for (std::size_t i = 1; i + 1 < count; ++i)
-            out.push_back({corners, {normals[0], normals[i], normals[i + 1]}});
+            add_corner_fan(vertex, normals[0], normals[i], normals[i + 1], out);
         return;
     }
     for (std::size_t i = 0; i < count; ++i)
-        out.push_back({corners, {middle, normals[i], normals[(i + 1) % count]}});
+        add_corner_fan(vertex, middle, normals[i], normals[(i + 1) % count], out);
 }
 
 /// Whether a face has a crease at one of its edges at the vertex: most have none, and need no walk.

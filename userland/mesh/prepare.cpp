@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "mesh/steps.hpp"
+#include "mesh/two_sided.hpp"
 #include "mesh/vector.hpp"
 
 namespace phantom::mesh {
@@ -137,7 +138,9 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     mesh.faces = std::move(soup.faces);
     mesh.normals = std::move(soup.normals);
     mesh.face_normals = std::move(soup.face_normals);
-    finish_report(mesh, edges, report);
+    finish_report(mesh, edges, options.two_sided, report);
+    if (options.two_sided && !make_two_sided(mesh))
+        return Error{name, "has too many faces to have two sides", "leave out two_sided"};
     progress(1);
     return Prepared{std::move(mesh), std::move(report)};
 }

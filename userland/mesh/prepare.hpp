@@ -20,6 +20,7 @@ struct PrepareOptions {
     double weld_mm = 0.0;     ///< distance under which vertices are one; 0: only equal ones
     double crease_deg = 60.0; ///< edges sharper than this keep two normals
     double split_mm = 0.0;    ///< edges longer than this are bisected; 0: off
+    bool two_sided = false;   ///< faces get backs, see two_sided.hpp
     std::function<void(double)> progress{}; ///< 0 ... 1, may be empty
 };
 

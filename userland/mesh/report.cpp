@@ -39,13 +39,16 @@ void warn_size(double extent_mm, Report& report)
             fmt::format("{:.3g} m across: another unit? (--unit um, or --fit 100)", extent_mm / 1000.0));
 }
 
-void warn_defects(Report& report)
+void warn_defects(bool two_sided, Report& report)
 {
     const auto warn = [&report](std::uint64_t count, const char* what) {
         if (count > 0)
             report.warnings.push_back(fmt::format("{} {}", count, what));
     };
-    warn(report.boundary_edges, "boundary edges: the mesh is open, a tip can get behind it");
+    if (!two_sided)
+        warn(report.boundary_edges,
+             "boundary edges: the mesh is open, a tip can get behind it (two_sided = true in a "
+             "scene file makes both sides hard)");
     warn(report.nonmanifold_edges, "non-manifold edges (more than two faces): no proxy slides across them");
     warn(report.unorientable_edges,
          "edges whose two faces disagree on the outside: no proxy slides across them");
@@ -56,7 +59,7 @@ void warn_defects(Report& report)
 
 } // namespace
 
-void finish_report(const Mesh& mesh, const EdgeIndex& edges, Report& report)
+void finish_report(const Mesh& mesh, const EdgeIndex& edges, bool two_sided, Report& report)
 {
     report.vertices = mesh.vertices.size();
     report.faces = mesh.faces.size();
@@ -65,7 +68,7 @@ void finish_report(const Mesh& mesh, const EdgeIndex& edges, Report& report)
     for (std::size_t axis = 0; axis < 3; ++axis)
         report.size_mm[axis] = bounds.high[axis] - bounds.low[axis];
     warn_size(bounds.extent(), report);
-    warn_defects(report);
+    warn_defects(two_sided, report);
 }
 
 } // namespace phantom::mesh

@@ -68,7 +68,8 @@ void vertex_normals(Soup& soup);
 /// Unit normal by the corners' order; zero for a face without area.
 Vec3 face_normal(const Soup& soup, const Triple& face);
 
-/// Sizes, edge lengths, and the warnings that name an option.
-void finish_report(const Mesh& mesh, const EdgeIndex& edges, Report& report);
+/// Sizes, edge lengths, and the warnings that name an option. A mesh that will be two-sided is not warned
+/// about its boundary.
+void finish_report(const Mesh& mesh, const EdgeIndex& edges, bool two_sided, Report& report);
 
 } // namespace phantom::mesh

@@ -51,6 +51,7 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
     const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or("mm")));
     // A shape's sizes are in mm already.
     prepare.scale *= object.shape == Shape::none ? millimetres_in(unit).value_or(1.0) : 1.0;
+    prepare.two_sided = object.two_sided;
     if (prepare.fit_mm <= 0 && object.fit_mm)
         prepare.fit_mm = *object.fit_mm;
     return prepare;

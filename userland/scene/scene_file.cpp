@@ -102,6 +102,7 @@ void read_shape(TomlReader& object, ObjectEntry& out)
         return;
     refuse_beside(object, "unit", "shape: sizes are in mm");
     refuse_beside(object, "fit_mm", "shape: sizes are in mm");
+    refuse_beside(object, "two_sided", "shape: it is closed");
     if (*shape == "sphere") {
         out.shape = Shape::sphere;
         out.sphere_radius_mm = object.number("radius_mm", range::length_mm).value_or(0);
@@ -130,6 +131,7 @@ void read_mesh(TomlReader& object, const std::filesystem::path& scene, Faults& f
         object.fault("mesh", fmt::format("is \"{}\", expected a file .ply, .obj, .stl or .off", *mesh));
     out.unit = object.word("unit", unit_words);
     out.fit_mm = object.number("fit_mm", range::length_mm);
+    out.two_sided = object.flag("two_sided").value_or(false);
     refuse_beside(object, "radius_mm", "mesh");
     refuse_beside(object, "size_mm", "mesh");
 }
@@ -216,9 +218,10 @@ void read_objects(TomlReader& root, const toml::table& table, const std::filesys
             faults.add(objects->get(i)->source(), path + "expected a table [[object]]");
             return;
         }
-        TomlReader reader(
-            *entry, path,
-            {"name", "mesh", "shape", "radius_mm", "size_mm", "unit", "fit_mm", "pose", "material"}, faults);
+        TomlReader reader(*entry, path,
+                          {"name", "mesh", "shape", "radius_mm", "size_mm", "unit", "fit_mm", "two_sided",
+                           "pose", "material"},
+                          faults);
         ObjectEntry object = read_object(reader, path, scene, faults);
         object.where = faults.where(entry->source());
         object.material = material_index(reader, out);

@@ -25,6 +25,7 @@ struct ObjectEntry {
     std::optional<std::string> unit;
     std::optional<double> fit_mm;
     fdh::Pose pose;
+    bool two_sided = false;
     std::uint32_t material = 0;
 };
 

@@ -109,6 +109,18 @@ std::optional<int> TomlReader::whole_number(std::string_view key, int low, int h
     return static_cast<int>(*value);
 }
 
+std::optional<bool> TomlReader::flag(std::string_view key)
+{
+    const toml::node* node = table_.get(key);
+    if (!node)
+        return std::nullopt;
+    if (!node->is_boolean()) {
+        fault(key, fmt::format("is {}, expected true or false", shown(*node)));
+        return std::nullopt;
+    }
+    return node->as_boolean()->get();
+}
+
 bool TomlReader::numbers(std::string_view key, const Range& range, std::span<double> values)
 {
     const toml::node* node = table_.get(key);

@@ -47,6 +47,7 @@ class TomlReader {
     std::optional<std::string> word(std::string_view key, std::span<const std::string_view> words);
     std::optional<double> number(std::string_view key, const Range& range);
     std::optional<int> whole_number(std::string_view key, int low, int high);
+    std::optional<bool> flag(std::string_view key);
     /// Exactly values.size() numbers; false when absent or at fault.
     bool numbers(std::string_view key, const Range& range, std::span<double> values);
     /// A sub-table, or nullptr.

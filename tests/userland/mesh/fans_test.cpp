@@ -171,6 +171,35 @@ TEST(Fans, EachLiesAtItsFace)
     EXPECT_GT(seen, 50U);
 }
 
+TEST(Fans, CloseASheetThatIsTwoSided)
+{
+    Soup cap = globe(20, 16, 9); // without its southern half: a rim that bends
+    std::erase_if(cap.faces, [&cap](const Triple& t) {
+        return cap.vertices[t[0]][2] + cap.vertices[t[1]][2] + cap.vertices[t[2]][2] < 0;
+    });
+    Soup square;
+    square.vertices = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
+    square.faces = {{0, 1, 2}, {0, 2, 3}};
+    for (const Soup& soup : {cap, square}) {
+        PrepareOptions options;
+        options.two_sided = true;
+        const auto sheet = prepare(soup, options, "sheet");
+        ASSERT_TRUE(sheet.ok());
+        EXPECT_EQ(sheet->mesh.faces.size(), 2 * sheet->report.faces);
+        EXPECT_TRUE(sheet->report.warnings.empty() ||
+                    sheet->report.warnings[0].find("boundary") == std::string::npos);
+        for (std::uint32_t f = 0; f < sheet->mesh.faces.size(); ++f) {
+            for (const std::uint32_t neighbour : sheet->mesh.neighbours[f]) {
+                ASSERT_NE(neighbour, no_neighbour);
+                const Triple& back = sheet->mesh.neighbours[neighbour];
+                EXPECT_GE(std::count(back.begin(), back.end(), f), 1);
+            }
+        }
+        EXPECT_EQ(open_sides(sheet->mesh, make_fans(sheet->mesh)), 0);
+        EXPECT_GT(open_sides(sheet->mesh, Fans{}), 0);
+    }
+}
+
 TEST(Fans, ABoundaryStaysOpenAndHarmsNothing)
 {
     Soup open = cube();
