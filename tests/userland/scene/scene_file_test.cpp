@@ -84,9 +84,10 @@ TEST(SceneFile, WrongTypes)
               "a.toml:3: object 1: pose.translation_mm: is an array of 2, expected [3 numbers]");
     EXPECT_EQ(in_object("pose = { translation_mm = [1, 2, \"3\"] }\n"),
               "a.toml:3: object 1: pose.translation_mm: number 3 is \"3\", expected -1000000 ... 1000000 mm");
+    EXPECT_EQ(in_object("two_sided = 1\n"), "a.toml:3: object 1: two_sided: is 1, expected true or false");
     EXPECT_EQ(below_object("device = 3\n"),
               "a.toml:4: object 1: device: unknown key, expected name, mesh, shape, "
-              "radius_mm, size_mm, unit, fit_mm, pose, material");
+              "radius_mm, size_mm, unit, fit_mm, two_sided, pose, material");
     EXPECT_EQ(error_of("servo = 1\nobject = 2\n"), "a.toml:1: servo: is 1, expected a table");
     EXPECT_EQ(error_of("object = [1]\n"), "a.toml:1: object 1: expected a table [[object]]");
     EXPECT_EQ(below_object("[material]\nsoft = 1\n"),
@@ -134,6 +135,8 @@ TEST(SceneFile, MeshAndShape)
               "a.toml:2: object 1: shape: a box needs size_mm = [x, y, z]");
     EXPECT_EQ(error_of("[[object]]\nshape = \"box\"\nsize_mm = [1, 2, 3]\nradius_mm = 3\n"),
               "a.toml:4: object 1: radius_mm: has no meaning with shape = \"box\"");
+    EXPECT_EQ(error_of("[[object]]\nshape = \"sphere\"\nradius_mm = 3\ntwo_sided = true\n"),
+              "a.toml:4: object 1: two_sided: has no meaning with shape: it is closed");
     EXPECT_EQ(in_object("size_mm = [1, 2, 3]\n"), "a.toml:3: object 1: size_mm: has no meaning with mesh");
     EXPECT_EQ(error_of("[[object]]\nshape = \"sphere\"\nradius_mm = 3\nfit_mm = 3\n"),
               "a.toml:4: object 1: fit_mm: has no meaning with shape: sizes are in mm");
