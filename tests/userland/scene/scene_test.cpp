@@ -54,6 +54,23 @@ TEST(Scene, MissingFileAndUnknownExtension)
         << unknown.error().text();
 }
 
+TEST(Scene, TwoSidedSheetsAndCreasesBringTheirFans)
+{
+    const Folder folder;
+    folder.write("sheet.obj", "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n");
+    const Scene one = loaded(folder.write("one.toml", "[[object]]\nmesh = \"sheet.obj\"\n"));
+    EXPECT_EQ(one.triangles(), 2U);
+    EXPECT_EQ(one.patches(), 2U);
+    const Scene both =
+        loaded(folder.write("both.toml", "[[object]]\nmesh = \"sheet.obj\"\ntwo_sided = true\n"));
+    EXPECT_EQ(both.triangles(), 4U);
+    // over each of 4 sides 180 degrees in two steps of two fans; the corners' are counted in tests of fans
+    EXPECT_GE(both.patches(), 4U + 16U);
+    const Scene box =
+        loaded(folder.write("box.toml", "[[object]]\nshape = \"box\"\nsize_mm = [20, 30, 40]\n"));
+    EXPECT_EQ(box.patches(), 12U + 24U + 8U);
+}
+
 TEST(Scene, UnitOfObjectThenOfScene)
 {
     EXPECT_NEAR(extent(loaded_text("[[object]]\nmesh = \"part.obj\"\n")), 40, 1e-12);
