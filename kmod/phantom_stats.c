@@ -95,6 +95,19 @@ void phantom_stats_publish(struct phantom_stats *stats)
 	smp_store_release(&stats->page->sequence, sequence + 2);
 }
 
+bool phantom_stats_copy(const struct phantom_stats *stats, struct phantom_status *copy)
+{
+	u32 sequence = smp_load_acquire(&stats->page->sequence);
+	const u64 *from = (const u64 *)stats->page;
+	u64 *to = (u64 *)copy;
+	size_t word;
+
+	for (word = 0; word < PHANTOM_PAGE_WORDS; word++)
+		to[word] = READ_ONCE(from[word]);
+	smp_rmb(); /* the words before the sequence */
+	return !(sequence & 1) && READ_ONCE(stats->page->sequence) == sequence;
+}
+
 static u32 phantom_stats_bucket(u32 duration_ns)
 {
 	u32 octave;

@@ -42,6 +42,8 @@ void phantom_stats_count(struct phantom_histogram *histogram, u64 duration_ns);
 void phantom_stats_record(struct phantom_stats *stats, const struct phantom_tick *record);
 
 /* ---- readers, any context ------------------------------------------------ */
+/* The page but for its histograms. False: the writer came in between, try again. */
+bool phantom_stats_copy(const struct phantom_stats *stats, struct phantom_status *copy);
 /* Records written so far; the cursor of a reader who wants only what comes. */
 u64 phantom_stats_head(const struct phantom_stats *stats);
 /* The record at *cursor, which moves on; from the oldest left when that is lost. False: none. */
