@@ -31,6 +31,8 @@ int phantom_chardev_calibrate(struct phantom_chardev *chardev)
 
 	if (!servo->device || !servo->device->ops->calibrate)
 		return -EOPNOTSUPP;
+	if (phantom_chardev_gone(chardev))
+		return -ENODEV;
 	mutex_lock(&servo->control);
 	if (READ_ONCE(servo->state) != PHANTOM_STATE_IDLE)
 		error = -EBUSY;
