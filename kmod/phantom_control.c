@@ -20,7 +20,7 @@ static const struct phantom_model phantom_model_default = {
 	.model = PHANTOM_MODEL_PROJECTED,
 	.newton_steps = 2,
 	.combine = PHANTOM_COMBINE_BOUNDED,
-	.proxy = PHANTOM_PROXY_PAPER,
+	.proxy = PHANTOM_PROXY_CONSTRAINED,
 	.arith = PHANTOM_ARITH_FLOAT,
 };
 
