@@ -256,7 +256,7 @@ static bool phantom_chardev_over(const struct phantom_file *file)
 static ssize_t phantom_chardev_copy_records(struct phantom_file *file, char __user *buffer,
 					    size_t size)
 {
-	const struct phantom_stats *stats = &file->chardev->servo->stats;
+	struct phantom_stats *stats = &file->chardev->servo->stats;
 	struct phantom_tick record;
 	u64 cursor = file->cursor;
 	size_t done = 0;
