@@ -44,7 +44,7 @@ modules: ## build/modules/RELEASE/phantom_rt.ko for Debian's RT kernels, or KDIR
 	@$(if $(KDIR),,tools/kernel-headers)
 	@$(MAKE) --no-print-directory -j $(JOBS) -C kmod modules $(if $(KDIR),KDIR=$(abspath $(KDIR)))
 
-install: all ## programs and scenes to PREFIX (/usr/local)
+install: all ## programs, scenes and the udev rule to PREFIX (/usr/local)
 	@cmake --install $(RELEASE) --prefix $(or $(PREFIX),/usr/local)
 
 bench: ## query, tick and load times on the bunny

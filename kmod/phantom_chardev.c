@@ -31,6 +31,8 @@ int phantom_chardev_calibrate(struct phantom_chardev *chardev)
 
 	if (!servo->device || !servo->device->ops->calibrate)
 		return -EOPNOTSUPP;
+	if (phantom_chardev_gone(chardev))
+		return -ENODEV;
 	mutex_lock(&servo->control);
 	if (READ_ONCE(servo->state) != PHANTOM_STATE_IDLE)
 		error = -EBUSY;
@@ -254,7 +256,7 @@ static bool phantom_chardev_over(const struct phantom_file *file)
 static ssize_t phantom_chardev_copy_records(struct phantom_file *file, char __user *buffer,
 					    size_t size)
 {
-	const struct phantom_stats *stats = &file->chardev->servo->stats;
+	struct phantom_stats *stats = &file->chardev->servo->stats;
 	struct phantom_tick record;
 	u64 cursor = file->cursor;
 	size_t done = 0;

@@ -10,6 +10,7 @@
 #include <phantom_platform.h>
 #include "phantom_context.h"
 #include "phantom_servo.h"
+#include <phantom_trace.h>
 
 /* What STOP grants beyond the ramp: the slew limit's tail, and a late thread. */
 #define PHANTOM_STOP_SLACK_NS 1000000000ULL
@@ -19,7 +20,7 @@ static const struct phantom_model phantom_model_default = {
 	.model = PHANTOM_MODEL_PROJECTED,
 	.newton_steps = 2,
 	.combine = PHANTOM_COMBINE_BOUNDED,
-	.proxy = PHANTOM_PROXY_PAPER,
+	.proxy = PHANTOM_PROXY_CONSTRAINED,
 	.arith = PHANTOM_ARITH_FLOAT,
 };
 
@@ -99,6 +100,8 @@ static int phantom_control_check_start(const struct phantom_servo *servo,
 
 static void phantom_control_set_state(struct phantom_servo *servo, u32 state)
 {
+	if (state != servo->state)
+		trace_phantom_state(servo->unit, servo->state, state);
 	WRITE_ONCE(servo->state, state);
 	servo->stats.next.state = state;
 	phantom_stats_publish(&servo->stats);
@@ -219,6 +222,7 @@ void phantom_servo_suspend(struct phantom_servo *servo)
 	servo->stats.next.faults = servo->safety.faults;
 	WRITE_ONCE(servo->faults, servo->safety.faults);
 	WRITE_ONCE(servo->events, servo->events + 1);
+	trace_phantom_fault(servo->unit, servo->safety.faults);
 	phantom_control_set_state(servo, PHANTOM_STATE_FAULT);
 	phantom_control_wake(servo);
 }

@@ -37,6 +37,7 @@ struct phantom_unit {
 	struct phantom_servo servo;
 	struct phantom_chardev chardev;
 	struct phantom_power power;
+	struct dentry *debugfs; /* its folder, from add to remove */
 };
 
 /* What the module's parameters say about every unit. Constant while it is loaded. */

@@ -16,6 +16,7 @@
 #include <linux/cdev.h>
 #include <linux/completion.h>
 #include <linux/cpu.h>
+#include <linux/debugfs.h>
 #include <linux/delay.h>
 #include <linux/device.h>
 #include <linux/err.h>
@@ -35,6 +36,7 @@
 #include <linux/lockdep.h>
 #include <linux/log2.h>
 #include <linux/math.h>
+#include <linux/math64.h>
 #include <linux/minmax.h>
 #include <linux/mm.h>
 #include <linux/module.h>
@@ -43,6 +45,7 @@
 #include <linux/poll.h>
 #include <linux/sched.h>
 #include <linux/sched/isolation.h>
+#include <linux/seq_file.h>
 #include <linux/slab.h>
 #include <linux/string.h>
 #include <linux/suspend.h>

@@ -30,6 +30,7 @@
 #include <phantom_platform.h>
 #include "phantom_context.h"
 #include "phantom_servo.h"
+#include <phantom_trace.h>
 
 /* Readers of records are woken at most this often: at 10 kHz ten records cost one wake-up. */
 #define PHANTOM_WAKE_NS 1000000
@@ -165,6 +166,7 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 	next->set_level_error_nm = slot->level_error_nm;
 	next->sets++;
 	next->refused += slot->refused;
+	trace_phantom_set(servo->unit, slot->id, slot->patch_count, slot->refused, slot->radius_nm);
 }
 
 static void phantom_servo_take_model(struct phantom_servo *servo, struct phantom_pass *pass)
@@ -374,6 +376,7 @@ static void phantom_servo_record(struct phantom_servo *servo, const struct phant
 	memcpy(record.proxy_nm, pass->proxy_nm, sizeof(record.proxy_nm));
 	memcpy(record.force_un, pass->force_un, sizeof(record.force_un));
 	phantom_stats_record(&servo->stats, &record);
+	trace_phantom_tick(servo->unit, &record);
 }
 
 static void phantom_servo_publish(struct phantom_servo *servo, const struct phantom_pass *pass)
@@ -432,13 +435,18 @@ static bool phantom_servo_needs_set(struct phantom_servo *servo, const struct ph
 static void phantom_servo_tell(struct phantom_servo *servo, const struct phantom_pass *pass)
 {
 	u32 faults = servo->safety.faults;
+	u32 state = faults ? PHANTOM_STATE_FAULT : PHANTOM_STATE_RUNNING;
 	bool event = phantom_servo_needs_set(servo, pass);
 
-	if (faults & ~servo->faults)
+	if (faults & ~servo->faults) {
 		event = true;
+		trace_phantom_fault(servo->unit, faults);
+	}
+	if (state != servo->state)
+		trace_phantom_state(servo->unit, servo->state, state);
 	WRITE_ONCE(servo->causes, servo->safety.causes);
 	WRITE_ONCE(servo->faults, faults);
-	WRITE_ONCE(servo->state, faults ? PHANTOM_STATE_FAULT : PHANTOM_STATE_RUNNING);
+	WRITE_ONCE(servo->state, state);
 	if (event)
 		WRITE_ONCE(servo->events, servo->events + 1);
 	if (!event && pass->now_ns - servo->woken_ns < PHANTOM_WAKE_NS)

@@ -70,6 +70,7 @@ struct phantom_pass {
 
 struct phantom_servo {
 	/* fixed */
+	u32 unit; /* N of /dev/phantom_rtN, for traces; the owner's to set after init */
 	struct phantom_clock *clock;
 	struct phantom_device *device; /* NULL: there is none */
 	const struct phantom_float_ops *float_ops;

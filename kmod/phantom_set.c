@@ -39,11 +39,11 @@ static int phantom_set_copy_arrays(struct phantom_sets *sets)
 		u32 capacity = phantom_set_capacity(header->patch_count);
 
 		vfree(copy->patches);
-		copy->capacity = 0;
+		WRITE_ONCE(copy->capacity, 0);
 		copy->patches = vzalloc((size_t)capacity * sizeof(*copy->patches));
 		if (!copy->patches)
 			return -ENOMEM;
-		copy->capacity = capacity;
+		WRITE_ONCE(copy->capacity, capacity);
 	}
 	if (copy_from_user(copy->materials, u64_to_user_ptr(header->materials),
 			   header->material_count * sizeof(copy->materials[0])) ||
@@ -72,12 +72,12 @@ static int phantom_set_reserve(struct phantom_slot *slot, u32 patch_count,
 	if (slot->floats && slot->ops == ops && slot->capacity >= patch_count)
 		return 0;
 	vfree(slot->floats);
-	slot->capacity = 0;
-	slot->ops = ops;
+	WRITE_ONCE(slot->capacity, 0);
+	WRITE_ONCE(slot->ops, ops);
 	slot->floats = vzalloc(ops->set_bytes(capacity));
 	if (!slot->floats)
 		return -ENOMEM;
-	slot->capacity = capacity;
+	WRITE_ONCE(slot->capacity, capacity);
 	return 0;
 }
 
@@ -154,6 +154,21 @@ void phantom_set_forget(struct phantom_sets *sets)
 	if (waiting)
 		phantom_set_release(waiting);
 	sets->last_id = 0;
+}
+
+size_t phantom_set_bytes(const struct phantom_sets *sets)
+{
+	size_t bytes = (size_t)READ_ONCE(sets->copy.capacity) * sizeof(struct phantom_patch);
+	int i;
+
+	for (i = 0; i < PHANTOM_SLOTS; i++) {
+		const struct phantom_float_ops *ops = READ_ONCE(sets->slot[i].ops);
+		u32 capacity = READ_ONCE(sets->slot[i].capacity);
+
+		if (ops && capacity)
+			bytes += ops->set_bytes(capacity);
+	}
+	return bytes;
 }
 
 struct phantom_slot *phantom_set_take(struct phantom_sets *sets)

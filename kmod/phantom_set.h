@@ -87,6 +87,9 @@ void phantom_set_hand_over(struct phantom_sets *sets, struct phantom_slot *slot)
 /* Forgets the waiting set and the last id. */
 void phantom_set_forget(struct phantom_sets *sets);
 
+/* Memory of slots and copy. Any context; a submission in flight may or may not count. */
+size_t phantom_set_bytes(const struct phantom_sets *sets);
+
 /* phantom_set_check.c: 0 or -EINVAL. Looks at every field of the copy; counts its faces. */
 int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 patches_max);
 int phantom_set_check_arrays(struct phantom_set_copy *copy);

@@ -86,6 +86,7 @@ void phantom_stats_publish(struct phantom_stats *stats)
 	u32 sequence = stats->next.sequence;
 	size_t word;
 
+	stats->next.lost = (u32)atomic_read(&stats->lost);
 	WRITE_ONCE(stats->page->sequence, sequence + 1);
 	smp_wmb(); /* odd before any word: readers of a new word see it */
 	WRITE_ONCE(stats->page->abi_version, stats->next.abi_version);
@@ -93,6 +94,19 @@ void phantom_stats_publish(struct phantom_stats *stats)
 		WRITE_ONCE(to[word], from[word]);
 	stats->next.sequence = sequence + 2;
 	smp_store_release(&stats->page->sequence, sequence + 2);
+}
+
+bool phantom_stats_copy(const struct phantom_stats *stats, struct phantom_status *copy)
+{
+	u32 sequence = smp_load_acquire(&stats->page->sequence);
+	const u64 *from = (const u64 *)stats->page;
+	u64 *to = (u64 *)copy;
+	size_t word;
+
+	for (word = 0; word < PHANTOM_PAGE_WORDS; word++)
+		to[word] = READ_ONCE(from[word]);
+	smp_rmb(); /* the words before the sequence */
+	return !(sequence & 1) && READ_ONCE(stats->page->sequence) == sequence;
 }
 
 static u32 phantom_stats_bucket(u32 duration_ns)
@@ -134,7 +148,7 @@ u64 phantom_stats_head(const struct phantom_stats *stats)
 	return smp_load_acquire(&stats->head);
 }
 
-bool phantom_stats_read(const struct phantom_stats *stats, u64 *cursor, struct phantom_tick *record)
+bool phantom_stats_read(struct phantom_stats *stats, u64 *cursor, struct phantom_tick *record)
 {
 	for (;;) {
 		u64 head = smp_load_acquire(&stats->head);
@@ -142,8 +156,12 @@ bool phantom_stats_read(const struct phantom_stats *stats, u64 *cursor, struct p
 		size_t word;
 
 		/* the record that is being written now may sit in the oldest place */
-		if (head >= *cursor + PHANTOM_RING_RECORDS)
-			*cursor = head - PHANTOM_RING_RECORDS + 1;
+		if (head >= *cursor + PHANTOM_RING_RECORDS) {
+			u64 oldest = head - PHANTOM_RING_RECORDS + 1;
+
+			atomic_add((int)min_t(u64, oldest - *cursor, S32_MAX), &stats->lost);
+			*cursor = oldest;
+		}
 		if (*cursor >= head)
 			return false;
 		from = (u64 *)&stats->ring[*cursor % PHANTOM_RING_RECORDS];

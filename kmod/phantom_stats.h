@@ -24,6 +24,8 @@ struct phantom_stats {
 	struct phantom_status next; /* the writer's draft of the page, histograms unused */
 	struct phantom_tick *ring;
 	u64 head;
+	atomic_t
+		lost; /* records that readers came too late for; readers add, the writer publishes */
 };
 
 /* Bytes of the page, a multiple of the page size. */
@@ -42,10 +44,11 @@ void phantom_stats_count(struct phantom_histogram *histogram, u64 duration_ns);
 void phantom_stats_record(struct phantom_stats *stats, const struct phantom_tick *record);
 
 /* ---- readers, any context ------------------------------------------------ */
+/* The page but for its histograms. False: the writer came in between, try again. */
+bool phantom_stats_copy(const struct phantom_stats *stats, struct phantom_status *copy);
 /* Records written so far; the cursor of a reader who wants only what comes. */
 u64 phantom_stats_head(const struct phantom_stats *stats);
 /* The record at *cursor, which moves on; from the oldest left when that is lost. False: none. */
-bool phantom_stats_read(const struct phantom_stats *stats, u64 *cursor,
-			struct phantom_tick *record);
+bool phantom_stats_read(struct phantom_stats *stats, u64 *cursor, struct phantom_tick *record);
 
 #endif /* PHANTOM_STATS_H */

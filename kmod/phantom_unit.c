@@ -11,6 +11,7 @@
  */
 #include <phantom_platform.h>
 #include "device/phantom_device.h"
+#include "phantom_debugfs.h"
 #include "phantom_kernel.h"
 
 static struct phantom_unit_settings phantom_unit_settings;
@@ -49,6 +50,8 @@ int phantom_unit_setup(const struct phantom_unit_settings *settings)
 	error = class_register(&phantom_unit_class);
 	if (error)
 		unregister_chrdev_region(phantom_unit_first, PHANTOM_UNITS_MAX);
+	else
+		phantom_debugfs_init();
 	return error;
 }
 
@@ -56,6 +59,7 @@ void phantom_unit_cleanup(void)
 {
 	/* a reference may outlast its file by the time that a workqueue takes */
 	wait_event(phantom_unit_freed, !atomic_read(&phantom_unit_count));
+	phantom_debugfs_exit();
 	class_unregister(&phantom_unit_class);
 	unregister_chrdev_region(phantom_unit_first, PHANTOM_UNITS_MAX);
 	ida_destroy(&phantom_unit_numbers);
@@ -73,6 +77,7 @@ static int phantom_unit_init(struct phantom_unit *unit)
 				   PHANTOM_PATCHES_MAX);
 	if (error)
 		return error;
+	unit->servo.unit = unit->number;
 	mutex_lock(&unit->servo.control);
 	error = phantom_servo_set_rate(&unit->servo, phantom_unit_settings.rate_hz);
 	mutex_unlock(&unit->servo.control);
@@ -169,15 +174,18 @@ int phantom_unit_add(struct phantom_unit *unit)
 	cdev_init(&unit->cdev, &phantom_node_operations);
 	unit->cdev.owner = THIS_MODULE;
 	error = cdev_device_add(&unit->cdev, &unit->dev);
-	if (!error)
-		phantom_unit_introduce(unit);
-	return error;
+	if (error)
+		return error;
+	unit->debugfs = phantom_debugfs_add(dev_name(&unit->dev), &unit->servo);
+	phantom_unit_introduce(unit);
+	return 0;
 }
 
 void phantom_unit_remove(struct phantom_unit *unit)
 {
 	/* first, so that an open() that is on its way already finds the device gone */
 	phantom_chardev_unplug(&unit->chardev);
+	phantom_debugfs_remove(unit->debugfs);
 	cdev_device_del(&unit->cdev, &unit->dev);
 	dev_info(&unit->dev, "removed\n");
 }

@@ -128,7 +128,9 @@
  *                 ENODEV   the device was unplugged, and no record is left
  *                 0        no record, and the tick is not running (end of recording)
  *                 Whole records, from open() on, each file at its own pace. A reader that lags by
- *                 more than some thousand loses the oldest.
+ *                 more than some thousand loses the oldest: its records then have a gap in
+ *                 phantom_tick.tick that status->missed does not account for, and status->lost
+ *                 counts them
  */
 #ifndef PHANTOM_ABI_H
 #define PHANTOM_ABI_H
@@ -430,7 +432,8 @@ struct phantom_status {
 	__u32 set_level;
 	__u32 set_level_error_nm;
 	__u32 section_max_ns; /* the longest float section, those of SUBMIT_SET included */
-	__u32 reserved[9];
+	__u32 lost; /* records that lagging readers lost since the module was loaded, all files */
+	__u32 reserved[8];
 	struct phantom_histogram latency;
 	struct phantom_histogram duration;
 	struct phantom_histogram section;

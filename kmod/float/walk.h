@@ -6,23 +6,28 @@
  *     foot = the point of f nearest to P1
  *     a face c not next to f lies across the way V -> foot     -> V is held by f and c, see below
  *     V = foot; inside f                                       -> settled
- *     of the faces that meet at V's edge or vertex, f = the one on which V could go farthest;
- *     on none farther than `still`                             -> settled
+ *     of the faces that meet at V's edge or vertex, f = the one on which V could go farthest
+ *     on none farther than `still`: f = the face beside it that comes nearest to P1, nearer than V,
+ *     over a low lip (WALK_LIP); V = its foot
+ *     none                                                     -> settled
  *   held by f and c:
  *     P1 pulls V along c and off f's plane                     -> f = c
  *     V = the point of f nearest to P1 that is `lift` over c's plane; no farther than f reaches;
  *     another face e across that way                           -> held by f, c and e: V stays there,
  *                                                                 or goes on along e's plane alone
  *
- * Every piece of the way lies in one face and brings V nearer to P1, so V never jumps from sheet to
- * sheet: it stays on the front of a thin plate whose back is nearer, goes round an edge only when it
- * has come to it, and ends in a local minimum of the distance. That the pieces lie in faces is also
- * why a face across one of them is another surface (a second object, a self-intersection), which no
- * proxy may enter (Zilles, Salisbury 1995: at most three planes hold it).
+ * Every piece of the way lies in one face, and but for low lips each brings V nearer to P1, so V
+ * never jumps from sheet to sheet: it stays on the front of a thin plate whose back is nearer, goes
+ * round an edge only when it has come to it, and ends in a local minimum of the distance. That the
+ * pieces lie in faces is also why a face across one of them is another surface (a second object, a
+ * self-intersection), which no proxy may enter (Zilles, Salisbury 1995: at most three planes).
+ *
+ * Lips: seen from inside, a round surface that is made of flat faces has a local minimum on each of
+ * several faces, and a proxy that goes down only stays behind by one or two of them.
  *
  * Nothing but V and its face is kept. A walk that has settled, begun again for the same P1, finds
  * the same foot on the same face and no face to go on to: the V of a tip at rest is a fixed point.
- * The distance falls by what V moves (nearest.h) and `still` is above rounding: no cycle.
+ * The distance falls with what V moves (nearest.h), if only by rounding, and by more than that over a lip: no cycle.
  *
  * The nearest point is no continuous function of P1 on the medial axis of the inside. There V slides
  * down the far side: over the lip of an edge that the tip was pushed out through, or round a ball
@@ -46,6 +51,22 @@
 
 /* Planes whose normals are less than 1 mrad apart have no line in common to speak of. */
 #define WALK_PARALLEL ((real)1e-6) /* sin^2 */
+
+/*
+ * A lip is low if the faces on either side are less than 30 degrees apart, and it is no farther from
+ * the tip than V by more than this: what faces 20 degrees apart have, at equal distance from it.
+ */
+#define WALK_LIP_COSINE ((real)0.866)
+#define WALK_LIP ((real)1.0154) /* 1 / cos 10 degrees */
+
+/*
+ * Nearer by less than this part of the distance is rounding. It is small because at a lip V goes far
+ * for little: 20 um for 4 nm on facets of 0.2 mm, 3 mm deep.
+ */
+#define WALK_NEARER ((real)4e-7)
+
+/* The lanes of one step. */
+#define WALK_STEP_BITS ((1u << PHANTOM_LANES) - 1)
 
 struct walk {
 	struct phantom_float_job *job;
@@ -213,12 +234,14 @@ static inline u32 walk_next(const struct walk *walk)
 	real farthest = walk->still * walk->still;
 	u32 found = PHANTOM_PATCH_NONE, i, step, l;
 
+	if (feature_is_face(walk->at))
+		return found;
 	for (i = 0; i < set->block_count; i++) {
 		const struct block *block = &set->blocks[i];
 		u32 bits = ring_bits(block, walk->at);
 
 		for (step = 0; bits >> step * PHANTOM_LANES; step++) {
-			u32 here = bits >> step * PHANTOM_LANES & ((1u << PHANTOM_LANES) - 1);
+			u32 here = bits >> step * PHANTOM_LANES & WALK_STEP_BITS;
 			struct nearest_step at;
 			struct lanes3 go;
 			lanes way2;
@@ -242,6 +265,144 @@ static inline u32 walk_next(const struct walk *walk)
 	return found;
 }
 
+/*
+ * The way to the lowest place of the lip between V's face and that patch: the point of what the two
+ * share that is nearest to the tip. False if they share nothing.
+ */
+static inline bool walk_lip(const struct walk *walk, u32 patch, struct real3 *way)
+{
+	const struct phantom_float_set *set = walk->job->set;
+	const struct block *from = &set->blocks[walk->patch / PHANTOM_BLOCK];
+	const struct block *to = &set->blocks[patch / PHANTOM_BLOCK];
+	u32 lane = walk->patch % PHANTOM_BLOCK, other = patch % PHANTOM_BLOCK, i, j;
+	u32 shared[3] = {0}, first = 3, count = 0;
+	struct real3 q, e;
+
+	for (i = 0; i < 3; i++) {
+		for (j = 0; j < 3; j++)
+			shared[i] |= from->vertex[i][lane] == to->vertex[j][other];
+		count += shared[i];
+		if (shared[i] && first == 3)
+			first = i;
+	}
+	if (!count)
+		return false;
+	/* an edge i to i + 1 begins where the vertex before is not shared */
+	if (count == 2 && first == 0 && shared[2])
+		first = 2;
+	q = from_corner_lane(from, lane, first, walk->job->tip_nm);
+	*way = real3_scale(q, -1);
+	if (count == 1)
+		return true;
+	e = row3_lane(&from->edge[first].along, lane);
+	*way = real3_add(
+		*way,
+		real3_scale(e, real_clamp(real3_dot(e, q) *
+						  row_lane(from->edge[first].inverse_length2, lane),
+					  0, 1)));
+	return true;
+}
+
+/* Does no other surface lie across a way within that patch? */
+static inline bool walk_clear(const struct walk *walk, u32 patch, struct real3 begin,
+			      struct real3 end)
+{
+	const struct phantom_float_job *job = walk->job;
+	const struct block *block = &job->set->blocks[patch / PHANTOM_BLOCK];
+	struct beside beside = {.patch = patch};
+	struct segment segment;
+	s32 from[3], to[3];
+	u32 i;
+
+	for (i = 0; i < 3; i++)
+		beside.vertex[i] = block->vertex[i][patch % PHANTOM_BLOCK];
+	nm_offset(job->tip_nm, begin, from);
+	nm_offset(job->tip_nm, end, to);
+	return !segment_set(&segment, from, to) ||
+	       crossing_find_beside(job->set, &segment, CROSSING_INWARD, false, -1, &beside)
+			       .patch == PHANTOM_PATCH_NONE;
+}
+
+/*
+ * V goes on to the face beside its own that comes nearest to the tip, nearer than V, over a low lip.
+ * False if there is none.
+ */
+static inline bool walk_over_lip(struct walk *walk)
+{
+	const struct phantom_float_set *set = walk->job->set;
+	const struct block *own = &set->blocks[walk->patch / PHANTOM_BLOCK];
+	const struct lanes3 g = lanes3_all(walk_face_normal(walk, walk->patch));
+	real distance = real3_length(walk->way), lip_max = distance * WALK_LIP;
+	real nearest = real_max(distance - WALK_NEARER * (distance + set->extent), 0);
+	struct real3 lip, across = walk->way, end = walk->way;
+	u32 found = PHANTOM_PATCH_NONE, vertex[3], i, step, l;
+
+	nearest *= nearest;
+	for (i = 0; i < 3; i++)
+		vertex[i] = own->vertex[i][walk->patch % PHANTOM_BLOCK];
+	for (i = 0; i < set->block_count; i++) {
+		const struct block *block = &set->blocks[i];
+		u32 bits = ring_touches(block, vertex);
+
+		for (step = 0; bits >> step * PHANTOM_LANES; step++) {
+			u32 here = bits >> step * PHANTOM_LANES & WALK_STEP_BITS;
+			struct nearest_step at;
+			lanes distance2;
+
+			if (!here)
+				continue;
+			nearest_evaluate(block, step, &walk->tip, &at);
+			distance2 = lanes3_dot(at.way, at.way);
+			here &= mask_bits((distance2 < nearest) & (block->radius[step] > 0) &
+					  (lanes3_dot(row3_step(&block->face_normal, step), g) >
+					   WALK_LIP_COSINE));
+			for (l = 0; here >> l; l++) {
+				u32 patch = i * PHANTOM_BLOCK + step * PHANTOM_LANES + l;
+
+				if (!(here >> l & 1) || !(distance2[l] < nearest) ||
+				    patch == walk->patch || !walk_lip(walk, patch, &lip) ||
+				    real3_length(lip) > lip_max)
+					continue;
+				nearest = distance2[l];
+				found = patch;
+				across = lip;
+				end = lanes3_lane(at.way, l);
+			}
+		}
+	}
+	if (found == PHANTOM_PATCH_NONE || !walk_clear(walk, walk->patch, walk->way, across) ||
+	    !walk_clear(walk, found, across, end))
+		return false;
+	walk->patch = found;
+	walk->way = end;
+	nm_offset(walk->job->tip_nm, end, walk->proxy_nm);
+	return true;
+}
+
+/* On one face, and on to the next one. */
+static inline void walk_step(struct walk *walk)
+{
+	const s32 start[3] = {walk->proxy_nm[0], walk->proxy_nm[1], walk->proxy_nm[2]};
+	struct foot foot = walk_foot(walk, walk->patch);
+	u32 across = walk_along(walk, foot.way, walk->patch), next;
+
+	if (across != PHANTOM_PATCH_NONE) {
+		walk->settled = walk_held(walk, across, start);
+		next = walk->settled ? PHANTOM_PATCH_NONE : walk_next(walk);
+		if (next != PHANTOM_PATCH_NONE)
+			walk->patch = next;
+		return;
+	}
+	walk->at = foot.at;
+	walk->held[0] = walk->patch;
+	walk->held_count = 1;
+	next = walk_next(walk);
+	if (next != PHANTOM_PATCH_NONE)
+		walk->patch = next;
+	else
+		walk->settled = !walk_over_lip(walk);
+}
+
 /* V, on that patch, goes down to the tip. */
 static inline void walk_down(struct walk *walk, struct phantom_float_job *job, u32 patch)
 {
@@ -258,26 +419,8 @@ static inline void walk_down(struct walk *walk, struct phantom_float_job *job, u
 	walk->lift = walk->still;
 	walk->patch = patch;
 	walk->settled = false;
-	for (faces = 0; faces < WALK_FACES_MAX && !walk->settled; faces++) {
-		const s32 start[3] = {walk->proxy_nm[0], walk->proxy_nm[1], walk->proxy_nm[2]};
-		struct foot foot = walk_foot(walk, walk->patch);
-		u32 across = walk_along(walk, foot.way, walk->patch), next;
-
-		if (across != PHANTOM_PATCH_NONE) {
-			walk->settled = walk_held(walk, across, start);
-			if (walk->settled || feature_is_face(walk->at))
-				continue;
-		} else {
-			walk->at = foot.at;
-			walk->held[0] = walk->patch;
-			walk->held_count = 1;
-		}
-		next = feature_is_face(walk->at) ? PHANTOM_PATCH_NONE : walk_next(walk);
-		if (next == PHANTOM_PATCH_NONE)
-			walk->settled = true;
-		else
-			walk->patch = next;
-	}
+	for (faces = 0; faces < WALK_FACES_MAX && !walk->settled; faces++)
+		walk_step(walk);
 	for (i = 0; i < 3; i++)
 		job->proxy_nm[i] = walk->proxy_nm[i];
 	job->proxy_face =

@@ -97,6 +97,20 @@ static inline bool IS_ERR(const void *pointer)
 #define smp_wmb() __asm__ volatile("" ::: "memory")
 #define smp_mb() __asm__ volatile("lock; addl $0, -4(%%rsp)" ::: "memory", "cc")
 
+typedef struct {
+	int counter;
+} atomic_t;
+
+static inline int atomic_read(const atomic_t *value)
+{
+	return READ_ONCE(value->counter);
+}
+
+static inline void atomic_add(int amount, atomic_t *value)
+{
+	__atomic_fetch_add(&value->counter, amount, __ATOMIC_RELAXED);
+}
+
 /* ---- allocation: may be told to fail (phantom_usermode.h) ---------------- */
 typedef unsigned int gfp_t;
 #define GFP_KERNEL 0U

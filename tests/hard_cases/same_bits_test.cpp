@@ -19,7 +19,7 @@ Settings random_settings(std::mt19937& random)
     s.model = random() % 2 ? PHANTOM_MODEL_PAPER : PHANTOM_MODEL_PROJECTED;
     s.newton_steps = random() % 4;
     s.combine = random() % 2 ? PHANTOM_COMBINE_PAPER : PHANTOM_COMBINE_BOUNDED;
-    s.proxy = random() % 4 ? PHANTOM_PROXY_PAPER : PHANTOM_PROXY_OFF;
+    s.proxy = random() % 3; // off, paper, constrained
     s.effects = random() % 2 ? PHANTOM_EFFECT_DAMPING : 0;
     s.damping = 1;
     return s;

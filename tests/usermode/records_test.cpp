@@ -98,6 +98,8 @@ TEST_F(Records, LaggingReaderLosesTheOldestAndSeesTheGap)
     for (std::size_t i = 1; i < records.size(); ++i)
         ASSERT_EQ(records[i].tick, records[i - 1].tick + 1) << "and no other";
     EXPECT_EQ(records.back().tick, 20'003u);
+    step();
+    EXPECT_EQ(feeder.status().lost, records.front().tick - 4) << "and the page counts what it took";
 }
 
 TEST_F(Records, RecordsOutliveTheRun)

@@ -75,10 +75,12 @@ Result<Device> Device::greet(std::unique_ptr<Transport> transport)
     Device device(std::move(transport));
     if (const int rc = device.transport_->ioctl(PHANTOM_GET_INFO, &device.info_); rc < 0)
         return call_failed(device.name(), "GET_INFO", rc);
-    if (device.info_.abi_version != PHANTOM_ABI_VERSION)
+    if (device.info_.abi_version != PHANTOM_ABI_VERSION || device.info_.tick_size != sizeof(phantom_tick))
         return Error{device.name(),
-                     fmt::format("the module speaks version {} of the interface, this program version {}",
-                                 device.info_.abi_version, PHANTOM_ABI_VERSION),
+                     fmt::format("the module speaks version {} of the interface with ticks of {} bytes, this "
+                                 "program version {} with {}",
+                                 device.info_.abi_version, device.info_.tick_size, PHANTOM_ABI_VERSION,
+                                 sizeof(phantom_tick)),
                      "build and load the module that belongs to this program: make modules"};
     return device;
 }
@@ -285,6 +287,14 @@ Result<bool> Device::replay(const phantom_tick& record, std::uint64_t due_ns)
     if (rc < 0)
         return Error{name(), "only a machine with a virtual clock can replay"};
     return true;
+}
+
+Status Device::replay_sleep(const phantom_tick& record, std::uint64_t due_ns)
+{
+    const std::uint64_t woken_ns = due_ns - 1000000000ULL / record.rate_hz;
+    if (const int rc = transport_->sleep_until(woken_ns); rc < 0)
+        return call_failed(name(), "waking up", rc);
+    return success();
 }
 
 Status Device::set_time(std::uint64_t now_ns)

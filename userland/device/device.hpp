@@ -93,6 +93,8 @@ class Device {
     /// Virtual clock only: runs another machine's tick again, as phantom_um_replay() says. False: the run is
     /// over here. Its set is submitted before with submit_as(), which keeps header.id.
     Result<bool> replay(const phantom_tick& record, std::uint64_t due_ns);
+    /// That machine slept before its tick of the period that began at due_ns.
+    Status replay_sleep(const phantom_tick& record, std::uint64_t due_ns);
     Status set_time(std::uint64_t now_ns);
     Status submit_as(PatchSet& set);
     /// "SCHED_FIFO, CPU 1", or why not; for reports. Empty for the kernel.

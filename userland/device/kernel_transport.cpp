@@ -57,6 +57,7 @@ struct Device::KernelTransport final : Device::Transport {
     int step(std::uint32_t) override { return -EINVAL; }
     int replay(const phantom_tick&, std::uint64_t) override { return -EINVAL; }
     int set_time(std::uint64_t) override { return -EINVAL; }
+    int sleep_until(std::uint64_t) override { return -EINVAL; }
     bool is_kernel() const override { return true; }
     bool has_virtual_clock() const override { return false; }
     const std::string& name() const override { return node_; }

@@ -86,6 +86,8 @@ class Parser {
         if (header.version != RECORDING_VERSION)
             return Error{where_, fmt::format("is a recording of version {}, this program reads version {}",
                                              header.version, RECORDING_VERSION)};
+        if (header.reserved != 0)
+            return Error{where_, "is damaged: its header is not a recording's"};
         at_ += sizeof header;
         return success();
     }
@@ -195,7 +197,7 @@ class Parser {
         for (const phantom_tick& tick : ticks_) {
             bool begins = out_.runs.empty();
             const recording_start* start = nullptr;
-            while (next_start < starts_.size() && starts_[next_start].start_ns <= tick.time_ns) {
+            while (next_start < starts_.size() && starts_[next_start].start_ns < tick.time_ns) {
                 start = &starts_[next_start++];
                 begins = true;
             }

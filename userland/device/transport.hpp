@@ -23,6 +23,8 @@ struct Device::Transport {
     virtual int step(std::uint32_t ticks) = 0;
     virtual int replay(const phantom_tick& record, std::uint64_t due_ns) = 0;
     virtual int set_time(std::uint64_t now_ns) = 0;
+    /// Suspend, and resume at woken_ns.
+    virtual int sleep_until(std::uint64_t woken_ns) = 0;
 
     [[nodiscard]] virtual bool is_kernel() const = 0;
     [[nodiscard]] virtual bool has_virtual_clock() const = 0;

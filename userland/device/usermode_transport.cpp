@@ -50,6 +50,12 @@ struct Device::UsermodeTransport final : Device::Transport {
         return phantom_um_replay(machine_, &record, due_ns);
     }
     int set_time(std::uint64_t now_ns) override { return phantom_um_set_time(machine_, now_ns); }
+    int sleep_until(std::uint64_t woken_ns) override
+    {
+        phantom_um_suspend(machine_);
+        const int rc = phantom_um_set_time(machine_, woken_ns);
+        return rc < 0 ? rc : phantom_um_resume(machine_);
+    }
     bool is_kernel() const override { return false; }
     bool has_virtual_clock() const override { return virtual_clock_; }
     const std::string& name() const override { return name_; }

@@ -194,9 +194,9 @@ void BudgetOptions::apply(feeder::FeederOptions& options) const
         options.budget = static_cast<std::uint32_t>(std::stoul(budget));
 }
 
-void add_device_option(CLI::App& app, std::string& node)
+CLI::Option* add_device_option(CLI::App& app, std::string& node)
 {
-    app.add_option("--device", node, "the kernel's device [the first there is]")
+    return app.add_option("--device", node, "the kernel's device [the first there is]")
         ->type_name("/dev/phantom_rtN");
 }
 

@@ -87,7 +87,7 @@ struct BudgetOptions {
 };
 
 /// --device: NODE of the kernel's device, empty for the first there is.
-void add_device_option(CLI::App& app, std::string& node);
+CLI::Option* add_device_option(CLI::App& app, std::string& node);
 
 /// A line to the running session; the answer, or its refusal as an Error.
 Result<std::string> ask_session(const std::string& request);

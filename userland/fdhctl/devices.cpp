@@ -25,24 +25,28 @@ struct Entry {
     bool usable = false;
 };
 
-Entry kernel_entry()
+Entry kernel_entry(const std::string& node)
 {
-    Entry entry{PHANTOM_DEVICE_NODE, "kernel", "", "", false};
-    if (::access(PHANTOM_DEVICE_NODE, F_OK) != 0) {
-        entry.state = "not there: the module phantom_rt is not loaded";
-        entry.remedy = "make modules builds it; user mode needs no module";
-        return entry;
-    }
-    Result<device::Device> device = device::Device::open_kernel(device::Access::observer);
+    Entry entry{node, "kernel", "", "", false};
+    Result<device::Device> device = device::Device::open_kernel(device::Access::observer, node);
     if (!device) {
         entry.state = device.error().what;
         entry.remedy = device.error().remedy;
         return entry;
     }
-    entry.usable = ::access(PHANTOM_DEVICE_NODE, R_OK | W_OK) == 0;
+    entry.usable = ::access(node.c_str(), R_OK | W_OK) == 0;
     entry.kind = fmt::format("kernel, {} device", device::device_name(device->info().device));
-    entry.state = fmt::format("{}, {} to {} Hz", device::state_name(device->status().state),
-                              device->info().rate_min_hz, device->info().rate_max_hz);
+    const phantom_status status = device->status();
+    entry.state = fmt::format("{}, {} to {} Hz, at most {:.3g} N", device::state_name(status.state),
+                              device->info().rate_min_hz, device->info().rate_max_hz,
+                              device->info().max_force_un * 1e-6);
+    if (status.faults)
+        entry.state += ", fault: " + device::fault_names(status.faults);
+    if (device->info().device == PHANTOM_DEVICE_NONE) {
+        entry.usable = false;
+        entry.remedy = "the module was loaded without a device: device=sim or device=hid";
+        return entry;
+    }
     if (!entry.usable)
         entry.remedy = "may be read, not fed: a udev rule or membership of its group gives write access";
     return entry;
@@ -58,9 +62,13 @@ Entry simulated_entry()
 
 int run(bool as_json)
 {
-    const std::vector<Entry> entries{kernel_entry(), simulated_entry()};
-    constexpr const char* hardware =
-        "no hardware back end exists yet: neither HID nor PCI arms can be driven, only the simulated device";
+    std::vector<Entry> entries;
+    for (const std::string& node : device::kernel_nodes())
+        entries.push_back(kernel_entry(node));
+    entries.push_back(simulated_entry());
+    constexpr const char* hardware = "arms: WoodenHaptics/Polhem over USB HID, by the module loaded with "
+                                     "device=hid; no back end yet for the Novint "
+                                     "Falcon and PCI PHANToMs";
     if (as_json) {
         nlohmann::json list = nlohmann::json::array();
         for (const Entry& entry : entries)
@@ -69,7 +77,7 @@ int run(bool as_json)
                             {"state", entry.state},
                             {"usable", entry.usable},
                             {"remedy", entry.remedy}});
-        const nlohmann::json answer = {{"devices", list}, {"hardware_back_ends", nlohmann::json::array()}};
+        const nlohmann::json answer = {{"devices", list}, {"hardware_back_ends", {"hid"}}};
         std::printf("%s\n", answer.dump().c_str());
         return exit_success;
     }

@@ -32,7 +32,7 @@ struct Options {
     ServoOptions servo;
     BudgetOptions budget;
     bool view = false, detach = false, usermode = false, json = false;
-    std::string path, record, summary;
+    std::string path, record, summary, node;
     double seconds = 0; ///< 0: until somebody stops it
     double feed_rate_hz = feeder::FeederOptions{}.rate_hz;
     int cpu = -1;
@@ -76,6 +76,7 @@ feeder::SessionOptions session_options(const Options& options, const feeder::Pat
     options.budget.apply(session.feeder);
     session.feeder.rate_hz = options.feed_rate_hz;
     session.force_usermode = options.usermode;
+    session.node = options.node;
     session.servo = options.servo.words;
     session.cpu = options.cpu;
     if (!path.empty())
@@ -226,7 +227,9 @@ Run add_load(CLI::App& app)
     CLI::Option* view = app.add_flag("--view", options->view, "in a window (fdhview)");
     CLI::Option* detach = app.add_flag("--detach", options->detach,
                                        "go to the background after the first force; prints the process");
-    app.add_flag("--usermode", options->usermode, "do not look for the kernel's device");
+    CLI::Option* usermode =
+        app.add_flag("--usermode", options->usermode, "do not look for the kernel's device");
+    add_device_option(app, options->node)->excludes(usermode)->excludes(view);
     app.add_option("--rate", options->servo.words.rate_hz, "servo rate [1000, or the scene's]")
         ->check(CLI::Range(double{PHANTOM_RATE_MIN_HZ}, double{PHANTOM_RATE_MAX_HZ}))
         ->type_name("HZ");

@@ -18,23 +18,27 @@ namespace {
 
 using nlohmann::json;
 
-/// Of a session, or of the kernel's device without one (somebody else's program feeds it).
-Result<json> status_of_whatever_runs()
+/// Of a session, or of the kernel's device without one (somebody else's program feeds it). With a node: of
+/// that.
+Result<json> status_of_whatever_runs(const std::string& node)
 {
     const Result<std::string> answer = ask_session(R"({"command":"status"})");
-    if (answer)
-        return json::parse(*answer);
-    const Result<device::Device> kernel = device::Device::open_kernel(device::Access::observer);
+    if (answer) {
+        json status = json::parse(*answer);
+        if (node.empty() || status["device"] == node)
+            return status;
+    }
+    const Result<device::Device> kernel = device::Device::open_kernel(device::Access::observer, node);
     if (!kernel)
-        return answer.error();
+        return node.empty() ? answer.error() : kernel.error();
     json status = feeder::status_json(kernel->status());
     status["device"] = kernel->name();
     return status;
 }
 
-int run(bool as_json)
+int run(bool as_json, const std::string& node)
 {
-    const Result<json> status = status_of_whatever_runs();
+    const Result<json> status = status_of_whatever_runs(node);
     if (!status)
         return fail(status.error());
     if (as_json) {
@@ -59,8 +63,10 @@ int run(bool as_json)
 Run add_status(CLI::App& app)
 {
     auto as_json = std::make_shared<bool>(false);
+    auto node = std::make_shared<std::string>();
+    add_device_option(app, *node);
     app.add_flag("--json", *as_json, "as one line of JSON");
-    return [as_json] { return run(*as_json); };
+    return [as_json, node] { return run(*as_json, *node); };
 }
 
 } // namespace phantom::fdhctl

@@ -43,21 +43,26 @@ double milliseconds_since(Clock::time_point begin)
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// The kernel's device, or a machine of our own and the reason for it in `why`.
+/// The kernel's device, or a machine of our own and the sentence for it in `why`.
 Result<device::Device> open_device(const SessionOptions& options, std::uint32_t rate_hz, std::string& why)
 {
     if (!options.force_usermode) {
-        Result<device::Device> kernel = device::Device::open_kernel(device::Access::feeder);
-        if (kernel)
-            return kernel;
-        // There, ours to use, and yet it does not open: busy or of another version. User mode beside it
-        // would be a surprise.
-        if (::access(PHANTOM_DEVICE_NODE, R_OK | W_OK) == 0) {
-            Error error = kernel.error();
-            error.remedy = error.remedy.empty() ? "--usermode does without it" : error.remedy;
-            return error;
+        const bool chosen = !options.node.empty();
+        std::optional<Error> refusal; // of a device that is there and ours to use
+        for (const std::string& node : chosen ? std::vector{options.node} : device::kernel_nodes()) {
+            Result<device::Device> kernel = device::Device::open_kernel(device::Access::feeder, node);
+            if (kernel)
+                return kernel;
+            if (why.empty())
+                why = fmt::format("no kernel device at {} ({}): user mode", node, kernel.error().what);
+            if (!refusal && (chosen || ::access(node.c_str(), R_OK | W_OK) == 0))
+                refusal = kernel.error();
         }
-        why = kernel.error().what;
+        // Busy, or of another version: user mode beside it would be a surprise.
+        if (refusal) {
+            refusal->remedy = refusal->remedy.empty() ? "--usermode does without it" : refusal->remedy;
+            return *refusal;
+        }
     }
     device::UsermodeOptions usermode;
     usermode.rate_hz = rate_hz;
@@ -132,7 +137,7 @@ struct Session::Impl {
             return opened_device.error();
         device.emplace(std::move(*opened_device));
         if (!why.empty())
-            say(fmt::format("no kernel device at {} ({}): user mode", PHANTOM_DEVICE_NODE, why));
+            say(why);
         if (Status status = device->set_rate(*rate); !status)
             return status;
         Result<phantom_model> chosen =

@@ -20,6 +20,7 @@ struct SessionOptions {
     scene::LoadOptions load;
     FeederOptions feeder;
     bool force_usermode = false;          ///< do not look for the kernel's device
+    std::string node{};                   ///< the kernel's device, that or none; else the first that opens
     std::optional<std::uint32_t> rate_hz; ///< else the scene's [servo] rate, else 1000
     std::optional<phantom_model> model;   ///< else what `servo` and the scene's [servo] say
     scene::ServoSettings servo{};         ///< word by word over the scene's [servo]

@@ -127,6 +127,7 @@ class Replayer {
         if (Status status = device_->set_time(run.start_ns); !status)
             return status;
         due_ns_ = tick_ = 0;
+        faults_ = 0;
         first_ns_ = run.ticks.front().time_ns;
         return device_->start(run.start);
     }
@@ -186,6 +187,11 @@ class Replayer {
         tick_ = recorded.tick;
         period_ns_ = 1000000000ULL / recorded.rate_hz;
 
+        const std::uint32_t came = recorded.faults & ~faults_;
+        faults_ = recorded.faults;
+        if (came & PHANTOM_FAULT_SUSPENDED)
+            if (Status status = device_->replay_sleep(recorded, due_ns_); !status)
+                return status;
         const Result<bool> ran = device_->replay(recorded, due_ns_);
         if (!ran)
             return ran.error();
@@ -241,6 +247,7 @@ class Replayer {
     std::uint64_t set_id_ = 0;
     std::uint64_t tick_ = 0, due_ns_ = 0, period_ns_ = 0; ///< of the tick before
     std::uint64_t first_ns_ = 0;
+    std::uint32_t faults_ = 0; ///< of the tick before
 };
 
 } // namespace

@@ -25,7 +25,7 @@ TEST_F(Usage, EveryCommandHasHelp)
     const Outcome all = run({"--help"});
     EXPECT_EQ(all.status, 0);
     for (const char* command : {"load", "status", "rate", "model", "stop", "info", "prepare", "stroke",
-                                "trace", "bench", "devices", "view"}) {
+                                "trace", "record", "replay", "bench", "devices", "view"}) {
         EXPECT_NE(all.out.find(std::string("\n  ") + command), std::string::npos) << command;
         const Outcome outcome = run({command, "--help"});
         EXPECT_EQ(outcome.status, 0) << command;
@@ -85,7 +85,7 @@ TEST_F(Usage, DevicesIsHonestAboutHardware)
     EXPECT_EQ(outcome.status, 0);
     EXPECT_NE(outcome.out.find("/dev/phantom_rt0"), std::string::npos);
     EXPECT_NE(outcome.out.find("simulated"), std::string::npos);
-    EXPECT_NE(outcome.out.find("no hardware back end exists yet"), std::string::npos);
+    EXPECT_NE(outcome.out.find("no back end yet for the Novint Falcon"), std::string::npos);
 }
 
 } // namespace

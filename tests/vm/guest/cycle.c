@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 /*
- * 100 times load, touch, unload: what the kernel has allocated must be what it was. Counted per slab
- * cache after every cache was shrunk (which flushes what CPUs keep back), so one object of any size
- * lost in every other cycle shows.
+ * 100 times load, touch, unload, and with an arm that is plugged in: what the kernel has allocated must be
+ * what it was. Counted per slab cache after every cache was shrunk (which flushes what CPUs keep back), so
+ * one object of any size lost in every other cycle shows.
  */
 #define _GNU_SOURCE
 #include <dirent.h>
@@ -16,9 +16,11 @@
 #include "device.h"
 #include "harness.h"
 #include "module.h"
+#include "played_arm.h"
 
 #define CYCLES 100
 #define WARM_UP 10
+#define HID_CYCLES 40
 #define CACHES 1024
 
 struct cache {
@@ -140,6 +142,24 @@ static long active_in(const struct memory* memory, const char* name)
     return 0;
 }
 
+static void compare(const struct memory* before, const struct memory* after, int cycles)
+{
+    for (int i = 0; i < after->count; i++) {
+        long grown = after->caches[i].active - active_in(before, after->caches[i].name);
+
+        CHECK(grown < cycles / 2, "cache %s holds %ld objects more after %d cycles", after->caches[i].name,
+              grown, cycles);
+    }
+    /* Each CPU keeps up to two thread stacks for later: a few areas come and go. */
+    CHECK(after->vmalloc_areas - before->vmalloc_areas < cycles / 2,
+          "vmalloc: %ld areas of %ld pages, were %ld of %ld", after->vmalloc_areas, after->vmalloc_pages,
+          before->vmalloc_areas, before->vmalloc_pages);
+    CHECK(after->vmalloc_pages - before->vmalloc_pages < cycles, "vmalloc: %ld pages, were %ld",
+          after->vmalloc_pages, before->vmalloc_pages);
+    CHECK(after->percpu_kb <= before->percpu_kb, "per-CPU memory: %ld kB, was %ld", after->percpu_kb,
+          before->percpu_kb);
+}
+
 VM_TEST(cycle, a_hundred_loads_leave_nothing_behind, 120)
 {
     static struct memory before, after;
@@ -150,18 +170,49 @@ VM_TEST(cycle, a_hundred_loads_leave_nothing_behind, 120)
     for (int i = 0; i < CYCLES; i++)
         cycle(i);
     count_memory(&after);
-    for (int i = 0; i < after.count; i++) {
-        long grown = after.caches[i].active - active_in(&before, after.caches[i].name);
+    compare(&before, &after, CYCLES);
+}
 
-        CHECK(grown < CYCLES / 2, "cache %s holds %ld objects more after %d cycles", after.caches[i].name,
-              grown, CYCLES);
+/* The arm stays plugged in while the module comes and goes, or is unplugged while it runs. */
+static void hid_cycle(struct vm_arm* arm, int number)
+{
+    const struct phantom_start start = {.ramp_ms = 1, .stale_ms = 60000};
+    int fd, rc;
+
+    rc = vm_module_load("device=hid");
+    CHECK(rc == 0, "insmod in cycle %d: %s", number, vm_error_name(rc));
+    for (int ms = 0; access(PHANTOM_DEVICE_NODE, F_OK) < 0; ms++) {
+        CHECK(ms < 1000, "no node in cycle %d", number);
+        vm_sleep_ns(VM_NS_PER_MS);
     }
-    /* Each CPU keeps up to two thread stacks for later: a few areas come and go. */
-    CHECK(after.vmalloc_areas - before.vmalloc_areas < CYCLES / 2,
-          "vmalloc: %ld areas of %ld pages, were %ld of %ld", after.vmalloc_areas, after.vmalloc_pages,
-          before.vmalloc_areas, before.vmalloc_pages);
-    CHECK(after.vmalloc_pages - before.vmalloc_pages < CYCLES, "vmalloc: %ld pages, were %ld",
-          after.vmalloc_pages, before.vmalloc_pages);
-    CHECK(after.percpu_kb <= before.percpu_kb, "per-CPU memory: %ld kB, was %ld", after.percpu_kb,
-          before.percpu_kb);
+    fd = vm_open(O_RDWR);
+    vm_plate_submit(fd, 1);
+    vm_expect(fd, PHANTOM_START, &start, 0, "START");
+    vm_sleep_ns(5 * VM_NS_PER_MS);
+    if (number % 2) {
+        vm_arm_unplug(arm);
+        memset(arm, 0, sizeof(*arm));
+        vm_arm_plug(arm);
+    }
+    CHECK(close(fd) == 0, "close");
+    rc = vm_module_unload();
+    CHECK(rc == 0, "rmmod in cycle %d: %s", number, vm_error_name(rc));
+}
+
+VM_TEST(cycle, loads_with_an_arm_that_comes_and_goes_leave_nothing_behind, 120)
+{
+    static struct memory before, after;
+    struct vm_arm arm = {0};
+
+    if (access("/dev/uhid", F_OK) < 0)
+        vm_skip("no /dev/uhid");
+    vm_arm_plug(&arm);
+    for (int i = 0; i < WARM_UP; i++)
+        hid_cycle(&arm, i);
+    count_memory(&before);
+    for (int i = 0; i < HID_CYCLES; i++)
+        hid_cycle(&arm, i);
+    count_memory(&after);
+    compare(&before, &after, HID_CYCLES);
+    vm_arm_unplug(&arm);
 }

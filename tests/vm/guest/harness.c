@@ -19,6 +19,9 @@
 /* QEMU's isa-debugcon: every byte written goes into a file of the host. */
 #define RESULTS_PORT 0xe9
 
+/* In the initramfs of a kernel on which some tests make no sense: one `GROUP.NAME: WHY` a line. */
+#define SKIPPED_TESTS "/skipped"
+
 /* The child's exit status; any other is a failure without a message. */
 enum { PASSED = 0, FAILED = 41, SKIPPED = 42 };
 
@@ -231,6 +234,26 @@ static bool is_wanted(const struct vm_test* test, char* const* wanted, int count
     return false;
 }
 
+/* Why this kernel cannot give the test what it needs, by a line `GROUP.NAME: WHY` of the file; NULL when it
+ * can. */
+static const char* reason_to_skip(const struct vm_test* test)
+{
+    static char line[1000];
+    char full[128];
+    size_t length = (size_t)snprintf(full, sizeof(full), "%s.%s: ", test->group, test->name);
+    FILE* file = fopen(SKIPPED_TESTS, "r");
+    const char* why = NULL;
+
+    while (file && !why && fgets(line, sizeof(line), file)) {
+        line[strcspn(line, "\n")] = 0;
+        if (strncmp(line, full, length) == 0)
+            why = line + length;
+    }
+    if (file)
+        fclose(file);
+    return why;
+}
+
 int vm_run(char* const* wanted, int count)
 {
     int passed = 0, failed = 0, skipped = 0;
@@ -247,8 +270,16 @@ int vm_run(char* const* wanted, int count)
     sigprocmask(SIG_BLOCK, &set, NULL);
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     for (const struct vm_test* test = first; test; test = test->next) {
+        const char* why;
+
         if (!is_wanted(test, wanted, count))
             continue;
+        why = reason_to_skip(test);
+        if (why) {
+            vm_report("skipped %s.%s: %s", test->group, test->name, why);
+            skipped++;
+            continue;
+        }
         switch (run_one(test)) {
         case PASSED:
             passed++;

@@ -110,8 +110,11 @@ VM_TEST(record, slow_reader_loses_the_oldest_and_sees_the_gap, 20)
     int fd = vm_open_feeder();
     const struct phantom_status* page = vm_map(fd);
     struct phantom_status status;
+    uint32_t lost;
     int got;
 
+    vm_status(page, &status);
+    lost = status.lost;
     vm_set_rate(fd, 10000);
     vm_start(fd);
     vm_wait_ticks(page, 20000); /* two seconds: more than any ring of this module holds */
@@ -124,6 +127,10 @@ VM_TEST(record, slow_reader_loses_the_oldest_and_sees_the_gap, 20)
               (unsigned long long)records[i].tick, (unsigned long long)records[i - 1].tick);
     CHECK(records[got - 1].tick + 100 > status.tick, "the newest is %llu ticks old",
           (unsigned long long)(status.tick - records[got - 1].tick));
+    vm_wait_ticks(page, status.tick + 10); /* the page says it with the next tick */
+    vm_status(page, &status);
+    CHECK(status.lost - lost == records[0].tick - 1, "%u records counted as lost, %llu are",
+          status.lost - lost, (unsigned long long)records[0].tick - 1);
     vm_figure("the ring keeps %d records", got);
 }
 

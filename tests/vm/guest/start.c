@@ -2,6 +2,7 @@
 // START, STOP, CLEAR_FAULT: errors, and the states between them.
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -154,4 +155,56 @@ VM_TEST(start, latched_fault_outlives_stop_and_forbids_start, 20)
     vm_expect(fd, PHANTOM_START, &start, -EIO, "START with a latched fault");
     vm_expect(fd, PHANTOM_CLEAR_FAULT, NULL, 0, "CLEAR_FAULT");
     vm_expect(fd, PHANTOM_START, &start, 0, "START after CLEAR_FAULT");
+}
+
+struct stop {
+    int fd;
+    uint64_t over_ns;
+};
+
+static void* stop_it(void* argument)
+{
+    struct stop* stop = argument;
+
+    vm_expect(stop->fd, PHANTOM_STOP, NULL, 0, "STOP");
+    __atomic_store_n(&stop->over_ns, vm_now_ns(), __ATOMIC_RELEASE);
+    return NULL;
+}
+
+/* The ramp down still pushes: it has to know of the triangles that come. */
+VM_TEST(start, sets_are_taken_while_stop_ramps_down, 20)
+{
+    const struct phantom_start start = {.ramp_ms = 400, .stale_ms = 100};
+    struct stop stop = {.fd = vm_open_feeder()};
+    const struct phantom_status* page = vm_map(stop.fd);
+    struct phantom_status status;
+    uint64_t asked_ns, longest_ns = 0, id = 1;
+    pthread_t thread;
+
+    vm_move(stop.fd, 2000000, 3000000, VM_CONTACT_HEIGHT_NM);
+    vm_plate_submit(stop.fd, id);
+    vm_expect(stop.fd, PHANTOM_START, &start, 0, "START");
+    for (int i = 0; i < 100; i++) {
+        vm_plate_submit(stop.fd, ++id);
+        vm_sleep_ns(5 * VM_NS_PER_MS);
+    }
+    asked_ns = vm_now_ns();
+    CHECK(pthread_create(&thread, NULL, stop_it, &stop) == 0, "pthread_create");
+    while (!__atomic_load_n(&stop.over_ns, __ATOMIC_ACQUIRE)) {
+        uint64_t began_ns = vm_now_ns(), length_ns;
+
+        vm_plate_submit(stop.fd, ++id);
+        length_ns = vm_now_ns() - began_ns;
+        longest_ns = length_ns > longest_ns ? length_ns : longest_ns;
+        vm_sleep_ns(5 * VM_NS_PER_MS);
+        vm_status(page, &status);
+        CHECK(!(status.flags & (PHANTOM_TICK_STALE | PHANTOM_TICK_FADING)), "flags %#x during the ramp",
+              status.flags);
+    }
+    pthread_join(thread, NULL);
+    CHECK(stop.over_ns - asked_ns > 350 * VM_NS_PER_MS, "the ramp took %llu ns",
+          (unsigned long long)(stop.over_ns - asked_ns));
+    CHECK(longest_ns < 20 * VM_NS_PER_MS, "a SUBMIT_SET took %llu ns", (unsigned long long)longest_ns);
+    CHECK(status.set_id + 5 > id, "set %llu in use, %llu submitted", (unsigned long long)status.set_id,
+          (unsigned long long)id);
 }
