@@ -7,7 +7,7 @@ RELEASE := $(BUILD)/release
 JOBS    ?= $(shell nproc)
 CMAKE   := cmake -G Ninja -S userland
 
-.PHONY: help all demo test vm-test modules install bench lint clean
+.PHONY: help all demo test vm-test vm-debug modules install bench lint clean
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -39,6 +39,12 @@ vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 	@$(MAKE) --no-print-directory programs
 	@tools/vm-test
 
+vm-debug: ## the same on a kernel with KASAN, lockdep, kmemleak, which the first time is built (10 minutes)
+	@tools/bootstrap debug
+	@mkdir -p $(BUILD)
+	@$(MAKE) --no-print-directory programs
+	@tools/vm-debug
+
 modules: ## build/modules/RELEASE/phantom_rt.ko for Debian's RT kernels, or KDIR=/path/to/headers
 	@tools/bootstrap modules
 	@$(if $(KDIR),,tools/kernel-headers)
@@ -53,7 +59,7 @@ bench: ## query, tick and load times on the bunny
 	@$(MAKE) --no-print-directory programs
 	@$(BUILD)/bin/fdhctl bench scenes/bunny.toml
 
-lint: ## clang-format, clang-tidy, shellcheck
+lint: ## clang-format, checkpatch, clang-tidy, shellcheck
 	@tools/bootstrap lint
 	@tools/lint
 

@@ -249,6 +249,7 @@ static bool phantom_chardev_over(const struct phantom_file *file)
 {
 	const struct phantom_servo *servo = file->chardev->servo;
 
+	/* pairs with the end of a run in phantom_servo.c: its last record is there */
 	return READ_ONCE(servo->state) == PHANTOM_STATE_IDLE || smp_load_acquire(&servo->ended);
 }
 
@@ -286,7 +287,7 @@ ssize_t phantom_chardev_read(struct phantom_file *file, char __user *buffer, siz
 		u32 runs = READ_ONCE(servo->runs);
 		bool over = phantom_chardev_over(file);
 
-		smp_rmb();
+		smp_rmb(); /* the end before the records, and those after it */
 		mutex_lock(&file->reading);
 		done = phantom_chardev_copy_records(file, buffer, size);
 		mutex_unlock(&file->reading);

@@ -48,7 +48,10 @@ void phantom_chardev_release(struct phantom_file *file);
 long phantom_chardev_ioctl(struct phantom_file *file, unsigned int command, void __user *argument);
 ssize_t phantom_chardev_read(struct phantom_file *file, char __user *buffer, size_t size,
 			     bool nonblocking);
-/* EPOLLIN | EPOLLRDNORM, EPOLLPRI, EPOLLHUP | EPOLLERR; the caller waits on chardev->servo->wait. Any context. */
+/*
+ * EPOLLIN | EPOLLRDNORM, EPOLLPRI, EPOLLHUP | EPOLLERR; the caller waits on chardev->servo->wait.
+ * Any context.
+ */
 __poll_t phantom_chardev_poll(struct phantom_file *file);
 /* 0, -ENODEV, -EPERM or -EINVAL for a mapping of so many bytes at that offset. */
 int phantom_chardev_check_mmap(const struct phantom_file *file, bool write_or_execute, u64 offset,

@@ -99,8 +99,7 @@ static void phantom_clock_stop(struct phantom_clock *clock, struct phantom_servo
 	struct phantom_kernel_clock *kernel = phantom_clock_of(clock);
 
 	if (!wait_for_completion_timeout(&kernel->over, nsecs_to_jiffies(timeout_ns) + 1))
-		pr_warn("the force had not ramped to zero in time; the servo is ended all the "
-			"same\n");
+		pr_warn("the force had not ramped to zero in time; the servo is ended all the same\n");
 	kthread_stop(kernel->thread);
 	kernel->thread = NULL;
 }

@@ -170,7 +170,7 @@ static void phantom_control_halt(struct phantom_servo *servo, u32 wish)
 {
 	static const s32 zero[3];
 
-	smp_store_release(&servo->stop_wanted, wish);
+	smp_store_release(&servo->stop_wanted, wish); /* pairs with phantom_servo_act() */
 	servo->clock->ops->stop(servo->clock, servo, servo->limits.ramp_ns + PHANTOM_STOP_SLACK_NS);
 	/* again, for the case that the thread had to be ended before its ramp was */
 	servo->device->ops->write(servo->device, zero);
@@ -254,7 +254,7 @@ int phantom_servo_clear_fault(struct phantom_servo *servo)
 	if (!phantom_control_idle(servo)) {
 		if (servo->asleep || (READ_ONCE(servo->causes) & faults))
 			return -EAGAIN;
-		smp_store_release(&servo->clear_wanted, 1);
+		smp_store_release(&servo->clear_wanted, 1); /* pairs with phantom_servo_act() */
 		return 0;
 	}
 	servo->safety.faults = 0;

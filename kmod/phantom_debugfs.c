@@ -73,8 +73,8 @@ static void phantom_debugfs_counters(struct seq_file *file, const struct phantom
 		   status->missed, idle / 10, idle % 10);
 	seq_printf(file, "sections     %llu, longest %u ns\n", status->sections,
 		   status->section_max_ns);
-	seq_printf(file, "sets         %llu taken, %llu patches refused, %llu fades\n", status->sets,
-		   status->refused, status->fades);
+	seq_printf(file, "sets         %llu taken, %llu patches refused, %llu fades\n",
+		   status->sets, status->refused, status->fades);
 	seq_printf(file, "clamped      %llu ticks, %llu conversions saturated\n", status->clamped,
 		   status->saturated);
 }
@@ -143,7 +143,8 @@ static void phantom_debugfs_histogram(struct seq_file *file, const char *name,
 		total += READ_ONCE(histogram->count[bucket]);
 	seq_printf(file, "%s: %llu", name, total);
 	if (total)
-		seq_printf(file, ", median < %llu ns, p99 < %llu ns, p99.9 < %llu ns, longest %u ns",
+		seq_printf(file,
+			   ", median < %llu ns, p99 < %llu ns, p99.9 < %llu ns, longest %u ns",
 			   phantom_debugfs_percentile(histogram, total, 500),
 			   phantom_debugfs_percentile(histogram, total, 990),
 			   phantom_debugfs_percentile(histogram, total, 999),

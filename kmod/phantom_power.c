@@ -26,8 +26,7 @@ static int phantom_power_notify(struct notifier_block *notifier, unsigned long e
 	}
 	mutex_unlock(&servo->control);
 	if (error)
-		pr_err("the servo could not go on after the machine woke up: error %d; CLEAR_FAULT "
-		       "and START again\n",
+		pr_err("the servo could not go on after the machine woke up: error %d; CLEAR_FAULT and START again\n",
 		       error);
 	return NOTIFY_OK;
 }

@@ -59,6 +59,7 @@ static struct phantom_slot *phantom_set_pick(struct phantom_sets *sets)
 	int i;
 
 	for (i = 0; i < PHANTOM_SLOTS; i++)
+		/* pairs with phantom_set_release(): the last reader has done with it */
 		if (smp_load_acquire(&sets->slot[i].holder) == PHANTOM_SLOT_FREE)
 			return &sets->slot[i];
 	return NULL;
@@ -180,7 +181,7 @@ struct phantom_slot *phantom_set_take(struct phantom_sets *sets)
 
 void phantom_set_release(struct phantom_slot *slot)
 {
-	smp_store_release(&slot->holder, PHANTOM_SLOT_FREE);
+	smp_store_release(&slot->holder, PHANTOM_SLOT_FREE); /* pairs with phantom_set_pick() */
 }
 
 bool phantom_set_revised(const struct phantom_slot *before, const struct phantom_slot *after)

@@ -93,12 +93,12 @@ void phantom_stats_publish(struct phantom_stats *stats)
 	for (word = 1; word < PHANTOM_PAGE_WORDS; word++)
 		WRITE_ONCE(to[word], from[word]);
 	stats->next.sequence = sequence + 2;
-	smp_store_release(&stats->page->sequence, sequence + 2);
+	smp_store_release(&stats->page->sequence, sequence + 2); /* even after the last word */
 }
 
 bool phantom_stats_copy(const struct phantom_stats *stats, struct phantom_status *copy)
 {
-	u32 sequence = smp_load_acquire(&stats->page->sequence);
+	u32 sequence = smp_load_acquire(&stats->page->sequence); /* before the words */
 	const u64 *from = (const u64 *)stats->page;
 	u64 *to = (u64 *)copy;
 	size_t word;
@@ -140,18 +140,18 @@ void phantom_stats_record(struct phantom_stats *stats, const struct phantom_tick
 	smp_wmb(); /* the last head before these words: see phantom_stats_read() */
 	for (word = 0; word < PHANTOM_TICK_WORDS; word++)
 		WRITE_ONCE(to[word], from[word]);
-	smp_store_release(&stats->head, stats->head + 1);
+	smp_store_release(&stats->head, stats->head + 1); /* after the words */
 }
 
 u64 phantom_stats_head(const struct phantom_stats *stats)
 {
-	return smp_load_acquire(&stats->head);
+	return smp_load_acquire(&stats->head); /* pairs with phantom_stats_record(), as below */
 }
 
 bool phantom_stats_read(struct phantom_stats *stats, u64 *cursor, struct phantom_tick *record)
 {
 	for (;;) {
-		u64 head = smp_load_acquire(&stats->head);
+		u64 head = smp_load_acquire(&stats->head); /* before the words */
 		u64 *from, *to = (u64 *)record;
 		size_t word;
 

@@ -111,9 +111,10 @@
  *                          a normal that is not of unit length to 2^-10, a pose that is not the
  *                          identity (v1), a face after a fan patch, a fan whose corners do
  *                          not coincide as its kind says, or that has a face number or
- *                          neighbours, a neighbour that is no face, an object number twice, reserved not zero, radius 0 in
- *                          a material, vertices or centre beyond +-1 m of the origin, the origin
- *                          beyond PHANTOM_POSITION_MAX_NM
+ *                          neighbours, a neighbour that is no face, an object number twice,
+ *                          reserved not zero, radius 0 in a material, vertices or centre
+ *                          beyond +-1 m of the origin, the origin beyond
+ *                          PHANTOM_POSITION_MAX_NM
  *                 ENOMEM   no memory (the first sets after open or a change of arithmetic only;
  *                          slots are reused). The set in use stays in use
  *                 EAGAIN   every slot is in use: try again next tick

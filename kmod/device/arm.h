@@ -17,8 +17,9 @@
  * nothing for half a second switches the motors off by itself.
  *
  * SAFETY. A report older than PHANTOM_ARM_SILENCE_NS, a command that could not be sent, and commands
- * that have not got through for PHANTOM_ARM_DEAF_NS are faults of the device while the servo runs. Zero force is zero current. Currents are scaled down together, so that the direction of
- * the force stays, to what amplifier and windings bear (phantom_arm_motors).
+ * that have not got through for PHANTOM_ARM_DEAF_NS are faults of the device while the servo runs.
+ * Zero force is zero current. Currents are scaled down together, so that the direction of the force
+ * stays, to what amplifier and windings bear (phantom_arm_motors).
  */
 #ifndef PHANTOM_ARM_H
 #define PHANTOM_ARM_H

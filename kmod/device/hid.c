@@ -71,8 +71,10 @@ static int phantom_hid_transmit(struct phantom_hid *link)
 
 static bool phantom_hid_has_work(struct phantom_hid *link)
 {
-	return phantom_arm_has_command(&link->arm) ||
-	       smp_load_acquire(&link->asked) != link->answered;
+	/* pairs with phantom_hid_flush(): the command it waits for is there */
+	u32 asked = smp_load_acquire(&link->asked);
+
+	return asked != link->answered || phantom_arm_has_command(&link->arm);
 }
 
 static int phantom_hid_output(void *argument)
@@ -93,7 +95,7 @@ static int phantom_hid_output(void *argument)
 		asked = smp_load_acquire(&link->asked);
 		phantom_arm_command(&link->arm, link->buffer + 1);
 		phantom_arm_sent(&link->arm, phantom_hid_transmit(link));
-		smp_store_release(&link->answered, asked);
+		smp_store_release(&link->answered, asked); /* after what was sent */
 	}
 	__set_current_state(TASK_RUNNING);
 	phantom_arm_command_off(link->buffer + 1);
@@ -119,11 +121,12 @@ static int phantom_hid_flush(struct phantom_arm *arm)
 	u32 mine = link->asked + 1;
 	int ms;
 
-	smp_store_release(&link->asked, mine);
+	smp_store_release(&link->asked, mine); /* after the command */
 	for (ms = 0; ms < PHANTOM_HID_PATIENCE_MS; ms++) {
 		if (READ_ONCE(arm->gone))
 			return -ENODEV;
 		wake_up_process(link->output);
+		/* pairs with phantom_hid_output(): its error is there */
 		if (smp_load_acquire(&link->answered) == mine)
 			return READ_ONCE(arm->error);
 		usleep_range(500, 1000);

@@ -32,7 +32,8 @@ static inline void nearest_evaluate(const struct block *block, u32 step, const s
 	u32 i;
 
 	out->way = lanes3_scale(q, lanes_all(-1));
-	out->edge = out->along = lanes_all(0);
+	out->edge = lanes_all(0);
+	out->along = lanes_all(0);
 	for (i = 0; i < 3; i++) {
 		struct lanes3 e = row3_step(&block->edge[i].along, step), way;
 		lanes t, length2;

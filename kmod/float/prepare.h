@@ -280,12 +280,15 @@ static inline void prepare_idle(struct block *block, u32 lane)
 	u32 i, axis;
 
 	for (i = 0; i < 3; i++) {
-		p.edge[i] = p.normal[i] = zero;
+		p.edge[i] = zero;
+		p.normal[i] = zero;
 		p.length2[i] = 1;
 		for (axis = 0; axis < 3; axis++)
 			block->corner[i][axis][lane / PHANTOM_LANES][lane % PHANTOM_LANES] = 0;
 	}
-	p.lead = p.area1 = p.area2 = zero;
+	p.lead = zero;
+	p.area1 = zero;
+	p.area2 = zero;
 	row_set(block->radius, lane, -1);
 	row3_set(&block->centre, lane, zero);
 	row_set(block->extent, lane, -1e6);

@@ -234,7 +234,8 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 	if (!split)
 		return rounds;
 	for (i = 1; i < PROJECTED_ROOTS; i++) {
-		roots->h[i] = roots->sign[i] = zero;
+		roots->h[i] = zero;
+		roots->sign[i] = zero;
 		roots->valid[i] = (mask_lanes){};
 	}
 	for (l = 0; l < PHANTOM_LANES; l++) {

@@ -166,7 +166,10 @@ static void section_tick(struct phantom_float_job *job)
 	struct contact_force contact = {.deepest = 0};
 	const real q30 = (real)PHANTOM_Q30_ONE;
 
-	job->contacts = job->folded = job->saturated = job->invalid = 0;
+	job->contacts = 0;
+	job->folded = 0;
+	job->saturated = 0;
+	job->invalid = 0;
 	if (job->model.model != PHANTOM_MODEL_OFF)
 		section_contact(job, &contact);
 	if ((job->effects & PHANTOM_EFFECT_DAMPING) && contact.damping > 0)

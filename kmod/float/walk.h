@@ -27,7 +27,8 @@
  *
  * Nothing but V and its face is kept. A walk that has settled, begun again for the same P1, finds
  * the same foot on the same face and no face to go on to: the V of a tip at rest is a fixed point.
- * The distance falls with what V moves (nearest.h), if only by rounding, and by more than that over a lip: no cycle.
+ * The distance falls with what V moves (nearest.h), if only by rounding, and by more than that over
+ * a lip: no cycle.
  *
  * The nearest point is no continuous function of P1 on the medial axis of the inside. There V slides
  * down the far side: over the lip of an edge that the tip was pushed out through, or round a ball

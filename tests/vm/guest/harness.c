@@ -106,20 +106,27 @@ void vm_figure(const char* format, ...)
     vm_report("figure %s.%s: %s", running->group, running->name, figure);
 }
 
-uint64_t vm_seed(void)
+uint64_t vm_word(const char* name, uint64_t otherwise)
 {
-    uint64_t seed = 20010917;
+    uint64_t value = otherwise;
     char line[4096] = "";
     FILE* file = fopen("/proc/cmdline", "r");
 
     if (file) {
         if (fgets(line, sizeof(line), file)) {
-            const char* given = strstr(line, "vm.seed=");
+            const char* given = strstr(line, name);
             if (given)
-                seed = strtoull(given + strlen("vm.seed="), NULL, 0);
+                value = strtoull(given + strlen(name), NULL, 0);
         }
         fclose(file);
     }
+    return value;
+}
+
+uint64_t vm_seed(void)
+{
+    uint64_t seed = vm_word("vm.seed=", 20010917);
+
     vm_figure("seed %llu", (unsigned long long)seed);
     return seed;
 }

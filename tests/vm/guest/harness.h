@@ -50,6 +50,8 @@ __attribute__((noreturn, format(printf, 1, 2))) void vm_skip(const char* format,
 /* A figure worth reading, printed as `figure NAME: ...`. */
 __attribute__((format(printf, 1, 2))) void vm_figure(const char* format, ...);
 
+/* The number behind "vm.NAME=" on the kernel's command line. */
+uint64_t vm_word(const char* name, uint64_t otherwise);
 /* A seed for the test, printed with its name; fixed by vm.seed=N on the kernel's command line. */
 uint64_t vm_seed(void);
 /* splitmix64 (Steele, Lea, Flood 2014): the next number of a sequence. */
