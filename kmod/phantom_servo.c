@@ -70,10 +70,15 @@ static void phantom_servo_close_section(struct phantom_servo *servo, u64 begin)
 static void phantom_servo_float_tick(struct phantom_servo *servo,
 				     const struct phantom_float_ops *ops)
 {
-	u64 begin = phantom_servo_open_section(servo);
+	bool more;
 
-	ops->tick(&servo->job);
-	phantom_servo_close_section(servo, begin);
+	servo->job.more = 0;
+	do {
+		u64 begin = phantom_servo_open_section(servo);
+
+		more = ops->tick(&servo->job);
+		phantom_servo_close_section(servo, begin);
+	} while (more);
 }
 
 /* A device with joints: where its encoders say that the tip is. */

@@ -101,13 +101,16 @@ union scratch {
 	struct projected_root projected[PHANTOM_BLOCK * PROJECTED_ROOTS];
 };
 
+/* Of struct shell_scratch. */
+#define SHELL_SCRATCH_BYTES 1024
+
 struct phantom_float_set {
 	u32 patch_count;
 	u32 block_count; /* of faces */
 	u32 fan_block_count; /* they follow; only the shell has a use for them */
 	u32 material_count;
 	u32 refused;
-	u64 scratch_offset; /* from the set's begin, bytes: union scratch [block_count] */
+	u64 scratch_offset; /* from the set's begin, bytes: union scratch of each block, shell_scratch */
 	/*
 	 * Largest extent of a patch and largest contact radius, mm: they bound every distance
 	 * that is computed, hence every rounding error. See rounding_mm().

@@ -129,33 +129,4 @@ static inline bool overlap_dropped(const struct phantom_float_set *set,
 	return false;
 }
 
-/*
- * Clears the magnitude of every dropped contact; returns how many are left. Which contacts cross
- * is asked of all contacts, dropped or not.
- */
-static inline u32 overlap_remove(const struct phantom_float_set *set, struct paper_step *steps,
-				 u32 count, u32 contacts, const struct nm_point *tip,
-				 const s32 tip_nm[3])
-{
-	u32 left = contacts, i, l;
-
-	if (contacts < 2)
-		return contacts;
-	for (i = 0; i < count; i++)
-		overlap_planes(set, &steps[i], tip);
-	for (i = 0; i < count; i++) {
-		u32 lanes_in_contact = mask_bits(steps[i].contact);
-
-		for (l = 0; l < PHANTOM_LANES; l++) {
-			if (!(lanes_in_contact >> l & 1))
-				continue;
-			if (overlap_dropped(set, steps, count, &steps[i], l, tip_nm)) {
-				steps[i].magnitude[l] = 0;
-				left--;
-			}
-		}
-	}
-	return left;
-}
-
 #endif /* PHANTOM_FLOAT_OVERLAP_H */

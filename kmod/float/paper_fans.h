@@ -61,22 +61,4 @@ static inline bool paper_fan_crossed(const struct phantom_float_set *set,
 	return false;
 }
 
-/*
- * The contacts over fans; their number, and the contacts in scratch_fans(). `steps` are the steps
- * of faces with a contact.
- */
-static inline u32 paper_fans(const struct phantom_float_set *set, struct paper_step *steps,
-			     u32 count, const struct nm_point *tip)
-{
-	struct projected_root *roots = scratch_fans(set);
-	u32 found = projected_fans(set, tip, PHANTOM_NEWTON_STEPS_MAX, roots), left = 0, i;
-
-	for (i = 0; found && i < count; i++)
-		overlap_planes(set, &steps[i], tip);
-	for (i = 0; i < found; i++)
-		if (roots[i].sign > 0 && !paper_fan_crossed(set, steps, count, &roots[i]))
-			roots[left++] = roots[i];
-	return left;
-}
-
 #endif /* PHANTOM_FLOAT_PAPER_FANS_H */

@@ -60,6 +60,7 @@ struct phantom_float_job {
 	s32 centre_nm[3]; /* the set's coverage: what lies nearer than radius_nm is in the set */
 	u32 radius_nm;
 	u32 path_valid; /* 0: P0 means nothing (first tick), no crossing is looked for */
+	u32 more; /* 0 when a tick begins; then the section's own */
 	/* state, in and out */
 	u32 inside;
 	s32 proxy_nm[3]; /* V while inside */
@@ -79,7 +80,11 @@ struct phantom_float_ops {
 	/* Bytes of a set of that many patches (round up to PHANTOM_FLOAT_SET_ALIGN inside). */
 	size_t (*set_bytes)(u32 patch_count);
 	void (*prepare)(struct phantom_float_prepare *prepare);
-	void (*tick)(struct phantom_float_job *job);
+	/*
+	 * True: not yet done, call again with the job as it is; another section may begin in
+	 * between. Each call is bounded whatever the set holds, see shell.h.
+	 */
+	bool (*tick)(struct phantom_float_job *job);
 };
 
 extern const struct phantom_float_ops phantom_float_sse2;

@@ -425,7 +425,7 @@ static size_t section_set_bytes(u32 patch_count)
 	/* faces and fans each fill their last block up */
 	size_t blocks = (size_t)blocks_for(patch_count) + 1;
 	size_t bytes = sizeof(struct phantom_float_set) + blocks * sizeof(struct block) +
-		       blocks * sizeof(union scratch);
+		       blocks * sizeof(union scratch) + SHELL_SCRATCH_BYTES;
 
 	return (bytes + PHANTOM_FLOAT_SET_ALIGN - 1) & ~(size_t)(PHANTOM_FLOAT_SET_ALIGN - 1);
 }

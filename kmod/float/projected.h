@@ -409,112 +409,42 @@ static inline bool same_sheet(const struct phantom_float_set *set, const struct 
 	       shares_vertex(set, a->patch, b->patch);
 }
 
-/* Divides the weights where patches meet, so that one sheet weighs 1. */
-static inline void divide_weights(const struct phantom_float_set *set, struct projected_root *roots,
-				  u32 count)
+/*
+ * The weight of root i where patches meet: divided by what the roots of its sheet weigh together, so
+ * that one sheet weighs 1.
+ */
+static inline real sheet_weight(const struct phantom_float_set *set,
+				const struct projected_root *roots, u32 count, u32 i)
 {
-	real weight[SHEET_ROOTS_MAX], height = SAME_SHEET_HEIGHT * rounding_mm(set);
-	u32 i, j;
+	real height = SAME_SHEET_HEIGHT * rounding_mm(set), sum = 0, whole;
+	u32 j;
 
-	if (count > SHEET_ROOTS_MAX)
-		count = SHEET_ROOTS_MAX;
-	for (i = 0; i < count; i++) {
-		real sum = 0, whole;
-
-		weight[i] = roots[i].weight;
-		for (j = 0; j < count; j++)
-			if (j != i && same_sheet(set, &roots[i], &roots[j], height))
-				sum += roots[j].weight;
-		/*
-		 * A root that no neighbour shares ends at its wall, or meets a folded one there:
-		 * it keeps its weight. In between the divisor goes over without a step.
-		 */
-		whole = sum + roots[i].weight;
-		if (whole < 1)
-			whole += (1 - whole) * real_max(0, 1 - 16 * sum);
-		weight[i] /= whole;
-	}
-	for (i = 0; i < count; i++)
-		roots[i].weight = weight[i];
+	for (j = 0; j < count; j++)
+		if (j != i && same_sheet(set, &roots[i], &roots[j], height))
+			sum += roots[j].weight;
+	/*
+	 * A root that no neighbour shares ends at its wall, or meets a folded one there: it keeps
+	 * its weight. In between the divisor goes over without a step.
+	 */
+	whole = sum + roots[i].weight;
+	if (whole < 1)
+		whole += (1 - whole) * real_max(0, 1 - 16 * sum);
+	return roots[i].weight / whole;
 }
 
-/* S and F from the list of roots, in its order. */
-static inline void projected_sum(const struct phantom_float_set *set,
-				 const struct projected_root *roots, u32 count,
-				 struct contact_force *out)
-{
-	struct real3 sum = {0, 0, 0};
-	real bound = 0, forces = 0, damping = 0, length;
-	u32 i;
-
-	for (i = 0; i < count; i++) {
-		const struct projected_root *root = &roots[i];
-		const struct block *block = &set->blocks[root->patch / PHANTOM_BLOCK];
-		const struct float_material *material =
-			&set->materials[block->material[root->patch % PHANTOM_BLOCK]];
-		real magnitude = root->weight * root->magnitude;
-
-		sum = real3_add(sum, real3_scale(root->normal, root->sign * magnitude));
-		bound = real_max(bound, material->stiffness * material->radius);
-		forces += magnitude;
-		damping += magnitude * material->damping;
-		if (root->sign < 0) {
-			out->folded++;
-		} else if (root->height < out->deepest) {
-			out->deepest = root->height;
-			out->deepest_patch = root->patch;
-		}
-	}
-	length = real3_length(sum);
-	out->force = length > bound ? real3_scale(sum, bound / length) : sum;
-	if (forces > 0)
-		out->damping = damping / forces;
-}
-
-/* The roots of blocks first ... first + blocks - 1, in their order; returns how many. */
-static inline u32 projected_roots(const struct phantom_float_set *set, u32 first, u32 blocks,
-				  const struct nm_point *tip, u32 newton_steps, bool fan,
+/* The roots over a block, patch by patch; returns how many. */
+static inline u32 projected_block(const struct phantom_float_set *set, u32 block,
+				  const struct nm_point *tip, u32 newton_steps,
 				  struct projected_root *list)
 {
-	real rounding = rounding_mm(set);
-	u32 count = 0, block, step;
+	bool fan = block >= set->block_count;
+	u32 count = 0, step;
 
-	for (block = first; block < first + blocks; block++)
-		for (step = 0; step < PHANTOM_STEPS; step++)
-			count += projected_step(
-				&set->blocks[block], step, tip, rounding, newton_steps,
-				block * PHANTOM_BLOCK + step * PHANTOM_LANES, fan, &list[count]);
+	for (step = 0; step < PHANTOM_STEPS; step++)
+		count += projected_step(&set->blocks[block], step, tip, rounding_mm(set),
+					newton_steps, block * PHANTOM_BLOCK + step * PHANTOM_LANES,
+					fan, &list[count]);
 	return count;
-}
-
-/* The same for the fans. */
-static inline u32 projected_fans(const struct phantom_float_set *set, const struct nm_point *tip,
-				 u32 newton_steps, struct projected_root *list)
-{
-	return projected_roots(set, set->block_count, set->fan_block_count, tip, newton_steps, true,
-			       list);
-}
-
-static inline void contact_projected(const struct phantom_float_job *job, struct contact_force *out)
-{
-	const struct phantom_float_set *set = job->set;
-	struct projected_root *roots = scratch_projected(set);
-	struct nm_point tip = nm_point(job->tip_nm);
-	u32 steps = job->model.newton_steps, soft = 0, count = 0, i;
-
-	if (steps > PHANTOM_NEWTON_STEPS_MAX)
-		steps = PHANTOM_NEWTON_STEPS_MAX;
-	count = projected_roots(set, 0, set->block_count, &tip, steps, false, roots);
-	count += projected_fans(set, &tip, steps, &roots[count]);
-	if (!count)
-		return;
-	for (i = 0; i < count; i++)
-		soft |= roots[i].soft_walls;
-	if (soft)
-		divide_weights(set, roots, count);
-	projected_sum(set, roots, count, out);
-	out->contacts = count;
-	contact_direction(out);
 }
 
 #endif /* PHANTOM_FLOAT_PROJECTED_H */

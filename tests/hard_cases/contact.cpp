@@ -122,7 +122,8 @@ Touch Contact::tick(const Vec3& tip, const Vec3& velocity_mm_s)
     std::copy_n(job_.tip_nm, 3, job_.previous_nm);
     to_nm(tip, job_.tip_nm);
     to_nm(velocity_mm_s, job_.velocity_nm_s);
-    ops_->tick(&job_);
+    while (ops_->tick(&job_))
+        ++sections_;
     job_.path_valid = 1;
 
     Touch touch;

@@ -48,6 +48,8 @@ class Contact {
 
     [[nodiscard]] std::string name() const { return ops_->name; }
     [[nodiscard]] unsigned refused() const { return refused_; }
+    /// Float sections that ticks have taken beside their first one.
+    [[nodiscard]] unsigned more_sections() const { return sections_; }
     phantom_float_job& job() { return job_; }
 
   private:
@@ -58,6 +60,7 @@ class Contact {
     std::unique_ptr<void, Free> set_;
     phantom_float_job job_{};
     unsigned refused_ = 0;
+    unsigned sections_ = 0;
 };
 
 } // namespace phantom::hard

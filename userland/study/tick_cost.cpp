@@ -88,7 +88,10 @@ void time_float_ticks(const phantom_float_ops& ops, const phantom_model& model, 
             job.previous_nm[axis] = job.tip_nm[axis];
             job.tip_nm[axis] = static_cast<s32>(tip_nm[axis] - set.header.origin_nm[axis]);
         }
-        samples.push_back(nanoseconds_of([&] { ops.tick(&job); }));
+        samples.push_back(nanoseconds_of([&] {
+            while (ops.tick(&job))
+                ;
+        }));
         contacts += job.contacts;
         job.path_valid = 1;
     }

@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * shell.h - contact from outside, of either model, in pieces.
+ *
+ * A float section keeps preemption off, so it must be short whatever the set holds: 512 patches all in
+ * contact take some 0.1 M instructions with `projected` and millions with `paper`, whose overlap
+ * test grows with the square. So the work is done in pieces of bounded length; a section does
+ * pieces until it has spent SHELL_WORK, and what it has found so far waits in the set's scratch for
+ * the next section. Pieces are always done in the same order: where sections end changes no bit.
+ *
+ *   projected   BLOCKS  roots over faces and fans        paper   BLOCKS    contacts with faces, then over fans
+ *               WEIGHTS of roots that share a wall               PLANES    of the overlap test
+ *               SUM                                              FANS      overlapped by faces
+ *                                                                OVERLAP   among faces
+ *                                                                SUM
+ *
+ * Costs are in instructions of the narrowest unit, measured with everything in contact and rounded up.
+ */
+#ifndef PHANTOM_FLOAT_SHELL_H
+#define PHANTOM_FLOAT_SHELL_H
+
+#include "paper.h"
+#include "overlap.h"
+#include "combine.h"
+#include "projected.h"
+#include "paper_fans.h"
+
+#define SHELL_WORK 30000U /* after which a section ends */
+#define SHELL_PIECE 4000U /* a piece of small steps goes on for that long */
+
+#define SHELL_COST_BLOCK 250U /* of eight patches out of reach */
+#define SHELL_COST_ROOT 300U /* beside that, for each found */
+#define SHELL_COST_PAIR 10U /* of roots at a wall */
+#define SHELL_COST_SUM 30U /* of a root or contact */
+#define SHELL_COST_PLANES 40U /* of a step */
+#define SHELL_COST_CROSSED 80U /* a contact against a step */
+
+/* What comes next. */
+#define SHELL_BLOCKS 0U
+#define SHELL_WEIGHTS 1U
+#define SHELL_PLANES 2U
+#define SHELL_FANS 3U
+#define SHELL_OVERLAP 4U
+#define SHELL_SUM 5U
+#define SHELL_DONE 6U
+
+/* Between two sections of a tick; in the set's scratch. */
+struct shell_state {
+	struct contact_force out;
+	struct columns columns; /* paper: faces */
+	struct real3 sum; /* projected: roots; paper: fans */
+	real most, forces, damping;
+	u32 phase;
+	u32 cursor; /* in whatever the phase goes through */
+	u32 count; /* projected: roots; paper: steps with a contact */
+	u32 fans; /* paper: contacts over fans found, then left */
+	u32 fans_looked_at;
+	u32 soft; /* projected: some root lies on a soft wall */
+};
+
+struct shell_scratch {
+	struct shell_state state;
+	real weight[SHEET_ROOTS_MAX]; /* projected: of the first roots, divided */
+};
+
+_Static_assert(sizeof(struct shell_scratch) <= SHELL_SCRATCH_BYTES, "grow SHELL_SCRATCH_BYTES");
+
+static inline struct shell_scratch *shell_scratch(const struct phantom_float_set *set)
+{
+	return (struct shell_scratch *)((u8 *)scratch_paper(set) +
+					(u64)(set->block_count + set->fan_block_count) *
+						sizeof(union scratch));
+}
+
+static inline void shell_next(struct shell_state *state, u32 phase)
+{
+	state->phase = phase;
+	state->cursor = 0;
+}
+
+static inline void shell_begin(const struct phantom_float_set *set, struct shell_state *state)
+{
+	*state = (struct shell_state){.phase = SHELL_BLOCKS};
+	if (!(set->block_count + set->fan_block_count))
+		shell_next(state, SHELL_DONE);
+}
+
+/* Material of a lane that is counted through all blocks. */
+static inline const struct float_material *shell_material(const struct phantom_float_set *set,
+							  u32 patch)
+{
+	const struct block *block = &set->blocks[patch / PHANTOM_BLOCK];
+
+	return &set->materials[block->material[patch % PHANTOM_BLOCK]];
+}
+
+static inline void shell_finish(struct shell_state *state, struct real3 force)
+{
+	struct contact_force *out = &state->out;
+
+	out->force = force;
+	if (state->forces > 0)
+		out->damping = state->damping / state->forces;
+	contact_direction(out);
+	shell_next(state, SHELL_DONE);
+}
+
+/* ---- projected ------------------------------------------------------------ */
+
+static inline u32 shell_projected_blocks(const struct phantom_float_job *job,
+					 struct shell_state *state)
+{
+	const struct phantom_float_set *set = job->set;
+	struct projected_root *roots = scratch_projected(set);
+	struct nm_point tip = nm_point(job->tip_nm);
+	u32 steps = job->model.newton_steps, blocks = set->block_count + set->fan_block_count;
+	u32 spent = 0;
+
+	if (steps > PHANTOM_NEWTON_STEPS_MAX)
+		steps = PHANTOM_NEWTON_STEPS_MAX;
+	while (state->cursor < blocks && spent < SHELL_PIECE) {
+		u32 first = state->count;
+
+		state->count += projected_block(set, state->cursor++, &tip, steps, &roots[first]);
+		spent += SHELL_COST_BLOCK + SHELL_COST_ROOT * (state->count - first);
+		for (; first < state->count; first++)
+			state->soft |= roots[first].soft_walls;
+	}
+	if (state->cursor == blocks) {
+		state->out.contacts = state->count;
+		shell_next(state, !state->count ? SHELL_DONE
+				  : state->soft ? SHELL_WEIGHTS
+						: SHELL_SUM);
+	}
+	return spent;
+}
+
+static inline u32 shell_weights(const struct phantom_float_set *set, struct shell_state *state)
+{
+	struct projected_root *roots = scratch_projected(set);
+	real *weight = shell_scratch(set)->weight;
+	u32 count = state->count < SHEET_ROOTS_MAX ? state->count : SHEET_ROOTS_MAX;
+	u32 spent = 0, i;
+
+	for (; state->cursor < count && spent < SHELL_PIECE; state->cursor++) {
+		weight[state->cursor] = sheet_weight(set, roots, count, state->cursor);
+		spent += SHELL_COST_PAIR * count;
+	}
+	if (state->cursor == count) {
+		for (i = 0; i < count; i++)
+			roots[i].weight = weight[i];
+		shell_next(state, SHELL_SUM);
+	}
+	return spent;
+}
+
+/* S and F from the list of roots, in its order. */
+static inline u32 shell_projected_sum(const struct phantom_float_set *set,
+				      struct shell_state *state)
+{
+	struct contact_force *out = &state->out;
+	u32 spent = 0;
+	real length;
+
+	for (; state->cursor < state->count && spent < SHELL_PIECE; state->cursor++) {
+		const struct projected_root *root = &scratch_projected(set)[state->cursor];
+		const struct float_material *material = shell_material(set, root->patch);
+		real magnitude = root->weight * root->magnitude;
+
+		state->sum =
+			real3_add(state->sum, real3_scale(root->normal, root->sign * magnitude));
+		state->most = real_max(state->most, material->stiffness * material->radius);
+		state->forces += magnitude;
+		state->damping += magnitude * material->damping;
+		if (root->sign < 0) {
+			out->folded++;
+		} else if (root->height < out->deepest) {
+			out->deepest = root->height;
+			out->deepest_patch = root->patch;
+		}
+		spent += SHELL_COST_SUM;
+	}
+	if (state->cursor == state->count) {
+		length = real3_length(state->sum);
+		shell_finish(state, length > state->most
+					    ? real3_scale(state->sum, state->most / length)
+					    : state->sum);
+	}
+	return spent;
+}
+
+/* ---- paper ---------------------------------------------------------------- */
+
+static inline u32 shell_paper_faces(const struct phantom_float_set *set, u32 block,
+				    const struct nm_point *tip, struct shell_state *state)
+{
+	u32 before = state->out.contacts, step;
+
+	for (step = 0; step < PHANTOM_STEPS; step++) {
+		struct paper_step *at = &scratch_paper(set)[state->count];
+
+		if (!paper_evaluate(&set->blocks[block], step, tip, rounding_mm(set), at))
+			continue;
+		at->block = block;
+		at->step = step;
+		state->out.contacts += mask_count(at->contact);
+		state->count++;
+	}
+	return SHELL_COST_BLOCK + SHELL_COST_ROOT * (state->out.contacts - before);
+}
+
+static inline u32 shell_paper_blocks(const struct phantom_float_job *job, struct shell_state *state)
+{
+	const struct phantom_float_set *set = job->set;
+	struct nm_point tip = nm_point(job->tip_nm);
+	u32 blocks = set->block_count + set->fan_block_count, spent = 0;
+
+	while (state->cursor < blocks && spent < SHELL_PIECE) {
+		u32 block = state->cursor++, found;
+
+		if (block < set->block_count) {
+			spent += shell_paper_faces(set, block, &tip, state);
+			continue;
+		}
+		found = projected_block(set, block, &tip, PHANTOM_NEWTON_STEPS_MAX,
+					&scratch_fans(set)[state->fans]);
+		state->fans += found;
+		spent += SHELL_COST_BLOCK + SHELL_COST_ROOT * found;
+	}
+	if (state->cursor == blocks)
+		shell_next(state, state->count	? SHELL_PLANES
+				  : state->fans ? SHELL_FANS
+						: SHELL_DONE);
+	return spent;
+}
+
+/* One contact alone crosses nothing: the test is left out. */
+static inline u32 shell_planes(const struct phantom_float_job *job, struct shell_state *state)
+{
+	struct nm_point tip = nm_point(job->tip_nm);
+	u32 spent = 0;
+
+	if (state->out.contacts + state->fans < 2) {
+		shell_next(state, SHELL_FANS);
+		return 0;
+	}
+	for (; state->cursor < state->count && spent < SHELL_PIECE; state->cursor++) {
+		overlap_planes(job->set, &scratch_paper(job->set)[state->cursor], &tip);
+		spent += SHELL_COST_PLANES;
+	}
+	if (state->cursor == state->count)
+		shell_next(state, SHELL_FANS);
+	return spent;
+}
+
+/* Contacts over fans that have not folded and that no face in contact overlaps move to the front. */
+static inline u32 shell_fans(const struct phantom_float_set *set, struct shell_state *state)
+{
+	struct projected_root *roots = scratch_fans(set);
+	u32 spent = 0;
+
+	while (state->fans_looked_at < state->fans && spent < SHELL_PIECE) {
+		const struct projected_root *root = &roots[state->fans_looked_at++];
+
+		spent += SHELL_COST_SUM + SHELL_COST_CROSSED * state->count;
+		if (root->sign > 0 &&
+		    !paper_fan_crossed(set, scratch_paper(set), state->count, root))
+			roots[state->cursor++] = *root;
+	}
+	if (state->fans_looked_at == state->fans) {
+		state->fans = state->cursor;
+		shell_next(state, state->out.contacts > 1 ? SHELL_OVERLAP : SHELL_SUM);
+	}
+	return spent;
+}
+
+/*
+ * Clears the magnitude of every face's contact that is overlapped. Which contacts cross is asked of
+ * all of them, dropped or not. The cursor counts lanes of steps.
+ */
+static inline u32 shell_overlap(const struct phantom_float_job *job, struct shell_state *state)
+{
+	const struct phantom_float_set *set = job->set;
+	struct paper_step *steps = scratch_paper(set);
+	u32 spent = 0, end = state->count * PHANTOM_LANES;
+
+	for (; state->cursor < end && spent < SHELL_PIECE; state->cursor++) {
+		struct paper_step *at = &steps[state->cursor / PHANTOM_LANES];
+		u32 lane = state->cursor % PHANTOM_LANES;
+
+		if (!at->contact[lane])
+			continue;
+		spent += SHELL_COST_CROSSED * state->count;
+		if (overlap_dropped(set, steps, state->count, at, lane, job->tip_nm)) {
+			at->magnitude[lane] = 0;
+			state->out.contacts--;
+		}
+	}
+	if (state->cursor == end)
+		shell_next(state, SHELL_SUM);
+	return spent;
+}
+
+static inline void shell_paper_add(const struct phantom_float_set *set, const struct paper_step *at,
+				   struct shell_state *state)
+{
+	struct contact_force *out = &state->out;
+	u32 l;
+
+	columns_add(&state->columns, at->step, at->normal, at->magnitude);
+	for (l = 0; l < PHANTOM_LANES; l++) {
+		u32 patch = at->block * PHANTOM_BLOCK + at->step * PHANTOM_LANES + l;
+
+		if (!(at->magnitude[l] > 0))
+			continue;
+		if (at->height[l] < out->deepest) {
+			out->deepest = at->height[l];
+			out->deepest_patch = patch;
+		}
+		state->forces += at->magnitude[l];
+		state->damping += at->magnitude[l] * shell_material(set, patch)->damping;
+	}
+}
+
+/* Faces, then fans: the cursor goes through both. */
+static inline u32 shell_paper_sum(const struct phantom_float_job *job, struct shell_state *state)
+{
+	const struct phantom_float_set *set = job->set;
+	u32 end = state->count + state->fans, spent = 0;
+
+	for (; state->cursor < end && spent < SHELL_PIECE; state->cursor++) {
+		const struct projected_root *root;
+
+		spent += SHELL_COST_SUM * PHANTOM_LANES;
+		if (state->cursor < state->count) {
+			shell_paper_add(set, &scratch_paper(set)[state->cursor], state);
+			continue;
+		}
+		root = &scratch_fans(set)[state->cursor - state->count];
+		state->sum = real3_add(state->sum, real3_scale(root->normal, root->magnitude));
+		state->most = real_max(state->most, root->magnitude);
+		state->forces += root->magnitude;
+		state->damping += root->magnitude * shell_material(set, root->patch)->damping;
+	}
+	if (state->cursor == end) {
+		state->out.contacts += state->fans;
+		shell_finish(state,
+			     combine_paper(real3_add(columns_total(&state->columns), state->sum),
+					   real_max(columns_most(&state->columns), state->most),
+					   job->model.combine));
+	}
+	return spent;
+}
+
+/* ---- pieces --------------------------------------------------------------- */
+
+/* One piece; what it may have cost. Not when the phase is SHELL_DONE. */
+static inline u32 shell_piece(const struct phantom_float_job *job, struct shell_state *state)
+{
+	bool paper = job->model.model == PHANTOM_MODEL_PAPER;
+
+	switch (state->phase) {
+	case SHELL_BLOCKS:
+		return paper ? shell_paper_blocks(job, state) : shell_projected_blocks(job, state);
+	case SHELL_WEIGHTS:
+		return shell_weights(job->set, state);
+	case SHELL_PLANES:
+		return shell_planes(job, state);
+	case SHELL_FANS:
+		return shell_fans(job->set, state);
+	case SHELL_OVERLAP:
+		return shell_overlap(job, state);
+	default:
+		return paper ? shell_paper_sum(job, state) : shell_projected_sum(job->set, state);
+	}
+}
+
+#endif /* PHANTOM_FLOAT_SHELL_H */
