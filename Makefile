@@ -39,7 +39,7 @@ vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 	@$(MAKE) --no-print-directory programs
 	@tools/vm-test
 
-vm-debug: ## the same on a kernel with KASAN, lockdep, kmemleak, which the first time is built (10 minutes)
+vm-debug: ## the same on a kernel with KASAN, lockdep, kmemleak, which the first time is built (15 minutes of CPU)
 	@tools/bootstrap debug
 	@mkdir -p $(BUILD)
 	@$(MAKE) --no-print-directory programs

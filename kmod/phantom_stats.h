@@ -24,8 +24,7 @@ struct phantom_stats {
 	struct phantom_status next; /* the writer's draft of the page, histograms unused */
 	struct phantom_tick *ring;
 	u64 head;
-	atomic_t
-		lost; /* records that readers came too late for; readers add, the writer publishes */
+	atomic_t lost; /* records that readers came too late for: they add, the writer publishes */
 };
 
 /* Bytes of the page, a multiple of the page size. */

@@ -82,11 +82,16 @@ void vm_expect(int fd, unsigned long request, const void* argument, int expected
     CHECK(rc == expected, "%s gave %s, not %s", what, vm_error_name(rc), vm_error_name(expected));
 }
 
+uint32_t vm_rate(uint32_t rate_hz)
+{
+    uint64_t most_hz = vm_word("vm.most_hz=", rate_hz);
+
+    return rate_hz < most_hz ? rate_hz : (uint32_t)most_hz;
+}
+
 void vm_set_rate(int fd, uint32_t rate_hz)
 {
-    /* A kernel that is slow by its own checks has no time for more ticks: vm.most_hz=. */
-    const uint64_t most_hz = vm_word("vm.most_hz=", rate_hz);
-    const struct phantom_rate rate = {.rate_hz = rate_hz < most_hz ? rate_hz : (uint32_t)most_hz};
+    const struct phantom_rate rate = {.rate_hz = vm_rate(rate_hz)};
 
     vm_expect(fd, PHANTOM_SET_RATE, &rate, 0, "SET_RATE");
 }

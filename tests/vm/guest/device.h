@@ -31,6 +31,8 @@ int vm_ioctl(int fd, unsigned long request, const void* argument);
 void vm_expect(int fd, unsigned long request, const void* argument, int expected, const char* what);
 const char* vm_error_name(int error);
 
+/* The rate, or the highest that a kernel slow by its own checks has time for (vm.most_hz=). */
+uint32_t vm_rate(uint32_t rate_hz);
 void vm_set_rate(int fd, uint32_t rate_hz);
 /* Starts with sets that do not go stale within the test; all other limits at their defaults. */
 void vm_start(int fd);

@@ -52,7 +52,7 @@ static void make_good(struct fuzz* fuzz, unsigned long request)
     memset(fuzz->argument, 0, sizeof(fuzz->argument));
     switch (request) {
     case PHANTOM_SET_RATE: {
-        const struct phantom_rate rate = {.rate_hz = 1000 + below(fuzz, 9001)};
+        const struct phantom_rate rate = {.rate_hz = vm_rate(1000 + below(fuzz, 9001))};
         memcpy(fuzz->argument, &rate, sizeof(rate));
         break;
     }

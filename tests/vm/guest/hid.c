@@ -2,6 +2,7 @@
 // device=hid with a played arm: plugged in, touched, unplugged at every moment. Each test loads and unloads
 // the module.
 #define _GNU_SOURCE
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -317,11 +318,43 @@ VM_TEST(hid, unplugged_in_contact_is_a_fault_and_nothing_worse, 30)
     wait_node("/dev/phantom_rt1", false);
 }
 
+VM_TEST(hid, driver_taken_away_in_contact_switches_the_motors_off, 20)
+{
+    static const char folder[] = "/sys/bus/hid/drivers/phantom_rt/";
+    struct vm_arm arm;
+    const struct phantom_status* page;
+    struct dirent* entry;
+    int16_t at[3], current[3];
+    int unbind;
+    DIR* drivers;
+
+    load("");
+    plug(&arm);
+    touch(&arm, &page, at);
+    vm_arm_wait_commands(&arm, 3);
+    vm_arm_currents(&arm, current);
+    CHECK(current[2] != 0, "no force");
+    drivers = opendir(folder);
+    CHECK(drivers, "no %s", folder);
+    while ((entry = readdir(drivers)) && !strstr(entry->d_name, "16C0"))
+        ;
+    CHECK(entry, "the arm is not bound");
+    unbind = openat(dirfd(drivers), "unbind", O_WRONLY);
+    CHECK(write(unbind, entry->d_name, strlen(entry->d_name)) > 0, "unbind: %s", strerror(errno));
+    /* the cable is still in: its last command must have been the one */
+    vm_sleep_ns(2 * VM_NS_PER_MS);
+    expect_no_current(&arm, "after unbind");
+    CHECK(page->faults == PHANTOM_FAULT_UNPLUGGED, "faults %#x", page->faults);
+    CHECK(access(PHANTOM_DEVICE_NODE, F_OK) < 0, "the node is there");
+}
+
 VM_TEST(hid, first_number_is_free_again_after_the_last_close, 20)
 {
     struct vm_arm arm;
 
-    /* the module of the test before: it could not go while the page was mapped */
+    /* the module of the tests before stays: it could not go while its page was mapped */
+    if (!vm_module_is_loaded())
+        load("");
     plug(&arm);
     vm_arm_unplug(&arm);
     wait_node(PHANTOM_DEVICE_NODE, false);
