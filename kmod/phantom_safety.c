@@ -44,10 +44,21 @@ void phantom_safety_begin(struct phantom_safety *safety, const struct phantom_li
 		safety->ramp_ns = limits->ramp_ns;
 }
 
-void phantom_safety_watch(struct phantom_safety *safety, u64 latency_ns)
+void phantom_safety_watch(struct phantom_safety *safety, u64 latency_ns, u64 elapsed_ns,
+			  u64 period_ns)
 {
 	safety->causes = 0;
-	if (!safety->limits.off && latency_ns > safety->limits.stall_ns)
+	if (elapsed_ns < 2 * period_ns)
+		safety->behind_ns = 0;
+	else
+		safety->behind_ns += elapsed_ns;
+	if (safety->limits.off)
+		return;
+	if (safety->behind_ns > PHANTOM_OVERLOAD_STALLS * safety->limits.stall_ns) {
+		safety->overloaded = true;
+		phantom_safety_raise(safety, PHANTOM_FAULT_STALL);
+	}
+	if (latency_ns > safety->limits.stall_ns)
 		phantom_safety_raise(safety, PHANTOM_FAULT_STALL);
 }
 
@@ -85,6 +96,8 @@ void phantom_safety_raise(struct phantom_safety *safety, u32 cause)
 void phantom_safety_clear(struct phantom_safety *safety)
 {
 	safety->faults &= safety->causes;
+	if (!(safety->faults & PHANTOM_FAULT_STALL))
+		safety->overloaded = false;
 	safety->ramp_ns = safety->limits.off ? safety->limits.ramp_ns : 0;
 }
 

@@ -34,6 +34,12 @@
 /* 80 Hz: above what a hand does, below what makes an encoder's steps loud. */
 #define PHANTOM_VELOCITY_TAU_NS 2000000
 
+/*
+ * A servo that skips periods for that many stall limits on end cannot do the work it is asked for. A
+ * thread of its priority would leave nothing of its CPU to anyone.
+ */
+#define PHANTOM_OVERLOAD_STALLS 10
+
 /* Ramp of a servo whose feeder is gone. With the way there it stays within PHANTOM_FADE_NS. */
 #define PHANTOM_ABANDON_NS 15000000
 
@@ -53,6 +59,8 @@ struct phantom_safety {
 	u32 faults; /* latched */
 	u32 causes; /* of this tick */
 	bool stopping; /* the ramp goes down */
+	bool overloaded; /* until CLEAR_FAULT: contact is not worth the time it takes */
+	u64 behind_ns; /* how long every tick has skipped periods */
 	u64 ramp_ns; /* how far up the ramp is, 0 ... limits.ramp_ns */
 	s32 force_un[3]; /* sent last */
 	bool tracking; /* tip_nm is known */
@@ -68,7 +76,8 @@ void phantom_safety_begin(struct phantom_safety *safety, const struct phantom_li
 
 /* ---- once a tick, in this order ------------------------------------------ */
 /* elapsed_ns: since the last tick; latency_ns: wake-up after the period's begin. */
-void phantom_safety_watch(struct phantom_safety *safety, u64 latency_ns);
+void phantom_safety_watch(struct phantom_safety *safety, u64 latency_ns, u64 elapsed_ns,
+			  u64 period_ns);
 void phantom_safety_track(struct phantom_safety *safety, const s64 tip_nm[3], u64 elapsed_ns,
 			  u64 period_ns);
 /* Anyone's finding in this tick: PHANTOM_FAULT_... */

@@ -262,7 +262,8 @@ static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pa
 		pass->flags |= PHANTOM_TICK_UNCOVERED;
 	if (servo->active && pass->now_ns - servo->stats.next.set_time_ns > servo->stale_ns)
 		pass->flags |= PHANTOM_TICK_STALE;
-	reached = !(pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) && !off;
+	reached = !(pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) && !off &&
+		  !servo->safety.overloaded;
 	if (reached) {
 		phantom_servo_evaluate(servo, pass);
 		memcpy(touch->previous_nm, pass->tip_nm, sizeof(touch->previous_nm));
@@ -473,7 +474,7 @@ static void phantom_servo_tick(struct phantom_servo *servo, u64 now_ns, u64 peri
 	servo->last_ns = now_ns;
 	phantom_servo_take_set(servo, &pass);
 	phantom_servo_take_model(servo, &pass);
-	phantom_safety_watch(&servo->safety, now_ns - servo->next_ns);
+	phantom_safety_watch(&servo->safety, now_ns - servo->next_ns, pass.elapsed_ns, period_ns);
 	phantom_servo_sense(servo, &pass);
 	phantom_servo_contact(servo, &pass);
 	phantom_servo_act(servo, &pass);

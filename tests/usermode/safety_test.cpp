@@ -118,6 +118,38 @@ TEST_F(Safety, FaultCutsWithoutRampOrSlew)
     EXPECT_EQ(feeder.status().force_un[2], 0);
 }
 
+/// A servo that skips periods tick after tick would leave its CPU to nobody: it gives contact up.
+TEST_F(Safety, OverloadIsAFaultAndEndsTheWork)
+{
+    File feeder(machine);
+    phantom_start start{};
+    start.stall_us = 5000; // overloaded after ten times that
+    begin(feeder, start, 2'000'000);
+    step(500);
+    ASSERT_GT(feeder.status().force_un[2], 0);
+    const auto late_step = [this] {
+        phantom_um_inject_stall(machine, 3'000'000); // ticks 3 ms apart, and every one skips periods
+        step();
+    };
+    for (int i = 0; i < 15; ++i)
+        late_step();
+    EXPECT_EQ(feeder.status().faults, 0U);
+    step(); // one in time: it can do the work
+    for (int i = 0; i < 15; ++i)
+        late_step();
+    EXPECT_EQ(feeder.status().faults, 0U);
+    for (int i = 0; i < 30; ++i)
+        late_step();
+    EXPECT_EQ(feeder.status().faults, PHANTOM_FAULT_STALL);
+    EXPECT_EQ(feeder.status().contacts, 0U);
+    EXPECT_EQ(feeder.ioctl(PHANTOM_CLEAR_FAULT), -EAGAIN);
+    step(2);
+    ASSERT_EQ(feeder.ioctl(PHANTOM_CLEAR_FAULT), 0);
+    step(500);
+    EXPECT_EQ(feeder.status().faults, 0U);
+    EXPECT_GT(feeder.status().force_un[2], 0);
+}
+
 TEST_F(Safety, ClampKeepsTheDirection)
 {
     File feeder(machine);
