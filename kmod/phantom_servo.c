@@ -130,7 +130,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		slot->ops->prepare(&prepare);
 		kernel_fpu_end();
 		length = min_t(u64, phantom_servo_now(servo) - begin, U32_MAX);
-		if (length > servo->prepare_max_ns)
+		if (length > READ_ONCE(servo->prepare_max_ns))
 			WRITE_ONCE(servo->prepare_max_ns, (u32)length);
 		prepare.first += prepare.count;
 	} while (prepare.first < slot->patch_count);

@@ -69,7 +69,8 @@ class Parser {
     {
         const std::size_t before = to.size();
         to.resize(before + count);
-        std::memcpy(to.data() + before, from.data(), count * sizeof(T));
+        if (count > 0)
+            std::memcpy(to.data() + before, from.data(), count * sizeof(T));
     }
 
     Status header()

@@ -58,7 +58,7 @@ TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
     EXPECT_EQ(
         in_object("colour = \"red\"\n"),
         "a.toml:3: object 1: colour: unknown key, expected name, mesh, shape, radius_mm, size_mm, unit, "
-        "fit_mm, pose, material");
+        "fit_mm, two_sided, pose, material");
     EXPECT_EQ(below_object("[material.soft]\nstifness_n_mm = 1\n"),
               "a.toml:5: material.soft.stifness_n_mm: unknown key, expected stiffness_n_mm, radius_mm, "
               "damping_ns_m");
