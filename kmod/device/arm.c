@@ -62,7 +62,8 @@ void phantom_arm_command(struct phantom_arm *arm, u8 command[PHANTOM_ARM_COMMAND
 	phantom_mailbox_read(&arm->output, &output);
 	for (joint = 0; joint < 3; joint++)
 		phantom_arm_put16(command + 2 * joint, output.current_ma[joint]);
-	if (!xchg(&arm->preset_wanted, 0))
+	arm->presetting = xchg(&arm->preset_wanted, 0);
+	if (!arm->presetting)
 		return;
 	phantom_arm_put16(command + PHANTOM_ARM_COMMAND, PHANTOM_ARM_COMMAND_PRESET);
 	for (joint = 0; joint < 3; joint++)
@@ -73,6 +74,8 @@ void phantom_arm_command(struct phantom_arm *arm, u8 command[PHANTOM_ARM_COMMAND
 void phantom_arm_sent(struct phantom_arm *arm, int error)
 {
 	WRITE_ONCE(arm->error, error);
+	if (arm->presetting)
+		WRITE_ONCE(arm->preset_error, error);
 	WRITE_ONCE(arm->heard_ns, arm->link->now_ns(arm));
 }
 
@@ -199,12 +202,15 @@ static int phantom_arm_write(struct phantom_device *device, const s32 force_un[3
 static int phantom_arm_calibrate(struct phantom_device *device)
 {
 	struct phantom_arm *arm = phantom_arm_of(device);
+	int error;
 
 	if (READ_ONCE(arm->gone))
 		return -ENODEV;
 	xchg(&arm->preset_wanted, 1);
 	phantom_arm_send(arm, phantom_arm_no_current);
-	return arm->link->flush(arm);
+	error = arm->link->flush(arm);
+	/* a later command may have got through where this one did not */
+	return error ? error : READ_ONCE(arm->preset_error);
 }
 
 static void phantom_arm_destroy(struct phantom_device *device)

@@ -102,6 +102,8 @@ struct phantom_arm {
 	int error; /* one word, link: of the last command sent */
 	u64 heard_ns; /* one word, link: when that was */
 	u32 preset_wanted; /* exchanged: the next command presets the encoders */
+	bool presetting; /* link: the command under way does */
+	int preset_error; /* one word, link: what became of it */
 	/* the writer's: servo, else control */
 	u64 sent_ns;
 	s16 sent_ma[3];

@@ -106,6 +106,7 @@ static void* report_for_ever(void* argument)
     struct timespec next;
 
     sched_setscheduler(0, SCHED_FIFO, &priority);
+    count(&arm->awake);
     clock_gettime(CLOCK_MONOTONIC, &next);
     while (!is_set(&arm->leaving)) {
         next.tv_nsec += ARM_PERIOD_NS;
@@ -144,6 +145,7 @@ static void* listen_for_ever(void* argument)
     struct uhid_event event;
 
     sched_setscheduler(0, SCHED_FIFO, &priority);
+    count(&arm->awake);
     while (!is_set(&arm->leaving)) {
         struct pollfd wait = {.fd = arm->fd, .events = POLLIN};
 
@@ -174,9 +176,12 @@ void vm_arm_plug(struct vm_arm* arm)
     event.u.create2.rd_data[2] = (uint8_t)(usage >> 24);
     event.u.create2.rd_data[4] = (uint8_t)usage;
     event.u.create2.rd_data[5] = (uint8_t)(usage >> 8);
-    CHECK(write(arm->fd, &event, sizeof(event)) == sizeof(event), "UHID_CREATE2: %s", strerror(errno));
     CHECK(pthread_create(&arm->listener, NULL, listen_for_ever, arm) == 0, "pthread_create");
     CHECK(pthread_create(&arm->reporter, NULL, report_for_ever, arm) == 0, "pthread_create");
+    /* The firmware runs before the cable is in: the first command must not wait for a thread to begin. */
+    while (__atomic_load_n(&arm->awake, __ATOMIC_ACQUIRE) < 2)
+        vm_sleep_ns(VM_NS_PER_MS / 10);
+    CHECK(write(arm->fd, &event, sizeof(event)) == sizeof(event), "UHID_CREATE2: %s", strerror(errno));
 }
 
 void vm_arm_unplug(struct vm_arm* arm)

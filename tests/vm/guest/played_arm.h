@@ -19,7 +19,7 @@ struct vm_arm {
     uint32_t usage; /* of its application; 0: the arm's own */
     pthread_t reporter, listener;
     /* Atomic words. */
-    uint32_t leaving, mute;
+    uint32_t awake, leaving, mute;
     uint32_t reports, commands, presets, nonzero;
     uint64_t pose;    /* encoder counts since it was built, three times 16 bits */
     uint64_t preset;  /* what they were, less what they were told to be */
