@@ -18,6 +18,7 @@ struct arm_machine {
     int send_error;
     u8 command[ARM_COMMAND_BYTES];
     u64 later_ns; /* beside the clock, for drive() */
+    int fail_once;
 };
 
 static struct arm_machine* machine_of(struct phantom_arm* arm)
@@ -43,6 +44,11 @@ static int link_flush(struct phantom_arm* arm)
 
     if (machine->deaf)
         return -ETIMEDOUT;
+    if (machine->fail_once) {
+        phantom_arm_command(arm, machine->command);
+        phantom_arm_sent(arm, machine->fail_once);
+        machine->fail_once = 0;
+    }
     phantom_arm_command(arm, machine->command);
     phantom_arm_sent(arm, machine->send_error);
     return machine->send_error;
@@ -122,6 +128,11 @@ void arm_machine_deafen(struct arm_machine* machine, int deaf, int error)
 {
     machine->deaf = deaf;
     machine->send_error = error;
+}
+
+void arm_machine_fail_once(struct arm_machine* machine, int error)
+{
+    machine->fail_once = error;
 }
 
 int arm_machine_receive(struct arm_machine* machine, const uint8_t* bytes, size_t size)

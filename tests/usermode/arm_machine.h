@@ -30,6 +30,8 @@ void arm_machine_move(struct arm_machine* machine, const int16_t encoder[3]);
 void arm_machine_mute(struct arm_machine* machine, int mute);
 /* Takes no commands, or answers each with this error. */
 void arm_machine_deafen(struct arm_machine* machine, int deaf, int error);
+/* The next flush sends twice, and the first of them fails so. */
+void arm_machine_fail_once(struct arm_machine* machine, int error);
 /* One report of these bytes now: 0 or -errno. */
 int arm_machine_receive(struct arm_machine* machine, const uint8_t* report, size_t size);
 /* The newest command; also one that nobody has taken yet. */

@@ -235,6 +235,13 @@ TEST_F(ArmTest, CalibrationIsRefusedWhileItRuns)
     EXPECT_EQ(arm_machine_calibrate(machine), 0);
 }
 
+TEST_F(ArmTest, PresetThatIsNotSentIsAnErrorEvenIfTheNextCommandIs)
+{
+    arm_machine_fail_once(machine, -EIO);
+    EXPECT_EQ(arm_machine_calibrate(machine), -EIO);
+    EXPECT_EQ(arm_machine_calibrate(machine), 0);
+}
+
 TEST_F(ArmTest, PulledCableEndsTheRunAndEveryCall)
 {
     touch();
