@@ -73,6 +73,7 @@ nlohmann::json json_of(const Facts& facts)
         objects.push_back({{"name", object.name},
                            {"file", object.file.string()},
                            {"triangles", object.mesh.faces.size()},
+                           {"fans", object.fans.fans.size()},
                            {"material", scene.materials[object.material].name},
                            {"report", report_json(object.report)}});
     for (const scene::Material& material : scene.materials) {
@@ -123,9 +124,12 @@ std::string text_of(const Facts& facts)
                              scene.objects.size() == 1 ? "" : "s", bounds.high[0] - bounds.low[0],
                              bounds.high[1] - bounds.low[1], bounds.high[2] - bounds.low[2]));
     for (const scene::Object& object : scene.objects) {
-        text += fmt::format("\n{:<11} {} ({}), material {}\n", "object", object.name, object.file.string(),
+        text += fmt::format("\n{:<11} {} ({}), material {}\n", "object", object.name,
+                            object.file.empty() ? "shape" : object.file.string(),
                             scene.materials[object.material].name);
         text += report_text(object.report);
+        if (!object.fans.fans.empty())
+            add("fans", fmt::format("{} over creases and their corners", object.fans.fans.size()));
     }
     text += "\n";
     for (const scene::Material& material : scene.materials)
