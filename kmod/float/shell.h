@@ -8,11 +8,11 @@
  * pieces until it has spent SHELL_WORK, and what it has found so far waits in the set's scratch for
  * the next section. Pieces are always done in the same order: where sections end changes no bit.
  *
- *   projected   BLOCKS  roots over faces and fans        paper   BLOCKS    contacts with faces, then over fans
- *               WEIGHTS of roots that share a wall               PLANES    of the overlap test
- *               SUM                                              FANS      overlapped by faces
- *                                                                OVERLAP   among faces
- *                                                                SUM
+ *   projected   BLOCKS  roots over faces and fans      paper   BLOCKS   contacts with faces, over fans
+ *               WEIGHTS of roots that share a wall             PLANES   of the overlap test
+ *               SUM                                            FANS     overlapped by faces
+ *                                                              OVERLAP  among faces
+ *                                                              SUM
  *
  * Costs are in instructions of the narrowest unit, measured with everything in contact and rounded up.
  */

@@ -108,15 +108,15 @@ static const struct {
 	const char *name;
 	void (*commit)(void);
 } bugs[] = {
-	{ "none", none },
-	{ "sleep_in_section", sleep_in_section },
-	{ "nested_section", nested_section },
-	{ "lock_in_section", lock_in_section },
-	{ "lock_in_hard_timer", lock_in_hard_timer },
-	{ "allocation_under_raw_lock", allocation_under_raw_lock },
-	{ "out_of_bounds", out_of_bounds },
-	{ "leak", leak },
-	{ "shift_too_far", shift_too_far },
+	{"none", none},
+	{"sleep_in_section", sleep_in_section},
+	{"nested_section", nested_section},
+	{"lock_in_section", lock_in_section},
+	{"lock_in_hard_timer", lock_in_hard_timer},
+	{"allocation_under_raw_lock", allocation_under_raw_lock},
+	{"out_of_bounds", out_of_bounds},
+	{"leak", leak},
+	{"shift_too_far", shift_too_far},
 };
 
 static int __init seeded_bug_init(void)
