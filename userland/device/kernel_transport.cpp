@@ -125,6 +125,7 @@ std::vector<std::string> kernel_nodes(const std::filesystem::path& devices)
     }
     std::sort(numbers.begin(), numbers.end());
     std::vector<std::string> nodes;
+    nodes.reserve(numbers.size());
     for (const unsigned long number : numbers)
         nodes.push_back(fmt::format("/dev/{}{}", prefix, number));
     if (nodes.empty())

@@ -84,8 +84,8 @@ std::vector<std::uint32_t> weld_near(const std::vector<Vec3>& vertices, double w
                            std::floor(vertices[v][2] / weld_mm)};
         std::uint32_t best = no_neighbour;
         for (int k = 0; k < 27; ++k) {
-            const std::uint64_t hash =
-                cell_hash(cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1);
+            const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
+            const std::uint64_t hash = cell_hash(cell[0] + x, cell[1] + y, cell[2] + z);
             best = std::min(best, table.find(hash, [&](std::uint32_t other) {
                 return distance(vertices[other], vertices[v]) <= weld_mm;
             }));
