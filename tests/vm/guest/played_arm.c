@@ -22,6 +22,8 @@
 #define ARM_USAGE 0xffab0200u
 #define ARM_REPORT 64
 #define ARM_PERIOD_NS 1000000
+/* Above the servo: real firmware has a processor of its own. */
+#define FIRMWARE_PRIORITY 90
 
 /* A Teensy with raw HID: 64 bytes each way, no report numbers. Usage page and usage are put in. */
 static const uint8_t descriptor[] = {
@@ -102,7 +104,7 @@ static void report(struct vm_arm* arm)
 static void* report_for_ever(void* argument)
 {
     struct vm_arm* arm = argument;
-    struct sched_param priority = {.sched_priority = 40};
+    struct sched_param priority = {.sched_priority = FIRMWARE_PRIORITY};
     struct timespec next;
 
     sched_setscheduler(0, SCHED_FIFO, &priority);
@@ -141,7 +143,7 @@ static void obey(struct vm_arm* arm, const uint8_t* data)
 static void* listen_for_ever(void* argument)
 {
     struct vm_arm* arm = argument;
-    struct sched_param priority = {.sched_priority = 45};
+    struct sched_param priority = {.sched_priority = FIRMWARE_PRIORITY + 1};
     struct uhid_event event;
 
     sched_setscheduler(0, SCHED_FIFO, &priority);
