@@ -4,6 +4,7 @@
  */
 #include <phantom_platform.h>
 #include "phantom_debugfs.h"
+#include "phantom_kernel.h"
 
 static struct dentry *phantom_debugfs_root;
 
@@ -13,8 +14,6 @@ static const char *const phantom_combine_names[] = {"paper", "bounded"};
 static const char *const phantom_proxy_names[] = {"off", "paper", "constrained"};
 static const char *const phantom_arith_names[] = {"float", "fixed", "double"};
 static const char *const phantom_isa_names[] = {"none", "sse2", "avx2", "double"};
-static const char *const phantom_fault_names[] = {"device",  "overspeed", "stall",
-						  "numeric", "unplugged", "suspended"};
 
 #define phantom_name(names, index) ((index) < ARRAY_SIZE(names) ? (names)[index] : "unknown")
 

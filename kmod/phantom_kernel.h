@@ -68,7 +68,11 @@ void phantom_unit_put(struct phantom_unit *unit);
 
 /* phantom_node.c: the calls on /dev/phantom_rtN. */
 extern const struct file_operations phantom_node_operations;
-/* phantom_sysfs.c: the files in /sys/class/phantom_rt/phantom_rtN. */
+/* phantom_sysfs.c. In the order of the bits of PHANTOM_FAULT_... */
+#define PHANTOM_FAULTS 6
+extern const char *const phantom_fault_names[PHANTOM_FAULTS];
+
+/* The files in /sys/class/phantom_rt/phantom_rtN. */
 extern const struct attribute_group *phantom_sysfs_groups[];
 
 /*

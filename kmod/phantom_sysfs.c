@@ -13,7 +13,7 @@
  *   continuous_force_mn  what it bears for long; 0: not known
  *   state           idle, running, fault
  *   faults          the latched ones, separated by blanks: device, overspeed, stall, numeric,
- *                   unplugged; or none
+ *                   unplugged, suspended; or none
  *   calibrate       write 1 while the arm rests in its rest pose: its encoders are told so.
  *                   Only where the device has joints. EBUSY while the servo runs, EINVAL for
  *                   anything but 1, ENODEV when the device is gone
@@ -21,6 +21,9 @@
 #include <phantom_platform.h>
 #include "device/phantom_device.h"
 #include "phantom_kernel.h"
+
+const char *const phantom_fault_names[PHANTOM_FAULTS] = {"device",  "overspeed", "stall",
+							 "numeric", "unplugged", "suspended"};
 
 static const struct phantom_unit *phantom_sysfs_unit(const struct device *dev)
 {
@@ -100,16 +103,14 @@ static DEVICE_ATTR_RO(state);
 
 static ssize_t faults_show(struct device *dev, struct device_attribute *attribute, char *text)
 {
-	/* in the order of the bits of PHANTOM_FAULT_... */
-	static const char *const names[] = {"device", "overspeed", "stall", "numeric", "unplugged"};
 	u32 faults = READ_ONCE(phantom_sysfs_unit(dev)->servo.faults);
 	ssize_t length = 0;
 	size_t bit;
 
-	for (bit = 0; bit < ARRAY_SIZE(names); bit++)
+	for (bit = 0; bit < ARRAY_SIZE(phantom_fault_names); bit++)
 		if (faults & BIT(bit))
-			length +=
-				sysfs_emit_at(text, length, "%s%s", length ? " " : "", names[bit]);
+			length += sysfs_emit_at(text, length, "%s%s", length ? " " : "",
+						phantom_fault_names[bit]);
 	return length + sysfs_emit_at(text, length, "%s\n", length ? "" : "none");
 }
 static DEVICE_ATTR_RO(faults);

@@ -88,6 +88,7 @@ static void sleeps_and_wakes(const char* level)
     struct pollfd entry = {.fd = observer, .events = POLLPRI};
     struct phantom_status before, after;
     uint64_t asleep_ns;
+    char text[100];
 
     vm_touch(fd, page);
     vm_status(page, &before);
@@ -95,6 +96,8 @@ static void sleeps_and_wakes(const char* level)
     sleep_machine(level);
     vm_wait_ticks(page, before.tick + 40);
     vm_status(page, &after);
+    vm_read_file("/sys/class/phantom_rt/phantom_rt0/faults", text, sizeof(text));
+    CHECK(strcmp(text, "suspended\n") == 0, "the faults file says %s", text);
     CHECK(after.state == PHANTOM_STATE_FAULT && after.faults == PHANTOM_FAULT_SUSPENDED,
           "state %u, faults %#x", after.state, after.faults);
     CHECK(vm_force_size(after.force_un) == 0, "force %d uN after waking up", after.force_un[2]);
