@@ -17,6 +17,7 @@
 
 #include "device.h"
 #include "harness.h"
+#include "module.h"
 
 static bool try_write(const char* path, const char* text)
 {
