@@ -37,23 +37,29 @@ static void phantom_control_wake(struct phantom_servo *servo)
 		wake_up_interruptible(&servo->wait);
 }
 
+/* The feature bit of each arithmetic. */
+static const u64 phantom_control_ariths[PHANTOM_ARITHS] = {
+	PHANTOM_FEATURE_ARITH_FLOAT, PHANTOM_FEATURE_ARITH_FIXED, PHANTOM_FEATURE_ARITH_DOUBLE};
+
 int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
-		       struct phantom_device *device, const struct phantom_float_ops *float_ops,
-		       const struct phantom_float_ops *double_ops, u32 patches_max)
+		       struct phantom_device *device,
+		       const struct phantom_float_ops *const ops[PHANTOM_ARITHS], u32 patches_max)
 {
+	u32 arith;
 	int error;
 
 	might_sleep();
 	memset(servo, 0, sizeof(*servo));
 	servo->clock = clock;
 	servo->device = device;
-	servo->float_ops = float_ops;
-	servo->double_ops = double_ops;
 	servo->features = PHANTOM_FEATURE_MODEL_PAPER | PHANTOM_FEATURE_MODEL_PROJECTED |
 			  PHANTOM_FEATURE_PROXY_PAPER | PHANTOM_FEATURE_PROXY_CONSTRAINED |
-			  PHANTOM_FEATURE_ARITH_FLOAT | PHANTOM_FEATURE_FANS;
-	if (double_ops)
-		servo->features |= PHANTOM_FEATURE_ARITH_DOUBLE;
+			  PHANTOM_FEATURE_FANS;
+	for (arith = 0; arith < PHANTOM_ARITHS; arith++) {
+		servo->ops[arith] = ops[arith];
+		if (ops[arith])
+			servo->features |= phantom_control_ariths[arith];
+	}
 	if (device && device->ops->move)
 		servo->features |= PHANTOM_FEATURE_SIM_MOVE;
 	error = phantom_stats_init(&servo->stats);
@@ -71,7 +77,7 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 	mutex_unlock(&servo->control);
 	servo->stats.next.rate_hz = servo->rate_hz;
 	servo->stats.next.model = phantom_model_default;
-	servo->stats.next.isa = float_ops->isa;
+	servo->stats.next.isa = ops[PHANTOM_ARITH_FLOAT]->isa;
 	phantom_stats_publish(&servo->stats);
 	return 0;
 }
@@ -284,14 +290,12 @@ static u64 phantom_control_needs(const struct phantom_model *model)
 				     PHANTOM_FEATURE_MODEL_PROJECTED};
 	static const u64 proxies[] = {0, PHANTOM_FEATURE_PROXY_PAPER,
 				      PHANTOM_FEATURE_PROXY_CONSTRAINED};
-	static const u64 ariths[] = {PHANTOM_FEATURE_ARITH_FLOAT, PHANTOM_FEATURE_ARITH_FIXED,
-				     PHANTOM_FEATURE_ARITH_DOUBLE};
 
 	if (model->model >= ARRAY_SIZE(models) || model->proxy >= ARRAY_SIZE(proxies) ||
-	    model->arith >= ARRAY_SIZE(ariths) || model->combine > PHANTOM_COMBINE_BOUNDED ||
+	    model->arith >= PHANTOM_ARITHS || model->combine > PHANTOM_COMBINE_BOUNDED ||
 	    model->newton_steps > PHANTOM_NEWTON_STEPS_MAX)
 		return 0;
-	return models[model->model] | proxies[model->proxy] | ariths[model->arith];
+	return models[model->model] | proxies[model->proxy] | phantom_control_ariths[model->arith];
 }
 
 int phantom_servo_set_model(struct phantom_servo *servo, const struct phantom_model *model)
@@ -318,8 +322,7 @@ int phantom_servo_set_model(struct phantom_servo *servo, const struct phantom_mo
 int phantom_servo_submit(struct phantom_servo *servo, const void __user *user)
 {
 	u32 arith = READ_ONCE(servo->model) >> 32 & 0xff;
-	const struct phantom_float_ops *ops =
-		arith == PHANTOM_ARITH_DOUBLE ? servo->double_ops : servo->float_ops;
+	const struct phantom_float_ops *ops = servo->ops[arith];
 	struct phantom_slot *slot;
 
 	phantom_context_file(servo);

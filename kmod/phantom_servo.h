@@ -73,8 +73,7 @@ struct phantom_servo {
 	u32 unit; /* N of /dev/phantom_rtN, for traces; the owner's to set after init */
 	struct phantom_clock *clock;
 	struct phantom_device *device; /* NULL: there is none */
-	const struct phantom_float_ops *float_ops;
-	const struct phantom_float_ops *double_ops; /* NULL: not offered */
+	const struct phantom_float_ops *ops[PHANTOM_ARITHS]; /* NULL: not offered; FLOAT always is */
 	u64 features; /* PHANTOM_FEATURE_... */
 
 	struct mutex control; /* one at a time changes the servo */
@@ -128,12 +127,12 @@ struct phantom_servo {
 };
 
 /*
- * patches_max: PHANTOM_PATCHES_MAX, or more in user mode. double_ops may be NULL. 0 or -errno.
+ * patches_max: PHANTOM_PATCHES_MAX, or more in user mode. ops: by arithmetic; all but FLOAT's may be NULL. 0 or -errno.
  * The servo owns neither clock nor device. Process context, as destroy().
  */
 int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
-		       struct phantom_device *device, const struct phantom_float_ops *float_ops,
-		       const struct phantom_float_ops *double_ops, u32 patches_max);
+		       struct phantom_device *device,
+		       const struct phantom_float_ops *const ops[PHANTOM_ARITHS], u32 patches_max);
 /* Not running. */
 void phantom_servo_destroy(struct phantom_servo *servo);
 

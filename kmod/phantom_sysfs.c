@@ -61,7 +61,8 @@ static DEVICE_ATTR_RO(features);
 static ssize_t instruction_set_show(struct device *dev, struct device_attribute *attribute,
 				    char *text)
 {
-	return sysfs_emit(text, "%s\n", phantom_sysfs_unit(dev)->servo.float_ops->name);
+	return sysfs_emit(text, "%s\n",
+			  phantom_sysfs_unit(dev)->servo.ops[PHANTOM_ARITH_FLOAT]->name);
 }
 static DEVICE_ATTR_RO(instruction_set);
 

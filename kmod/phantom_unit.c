@@ -68,12 +68,14 @@ void phantom_unit_cleanup(void)
 /* Clock, servo and character device of a unit that nobody sees yet. */
 static int phantom_unit_init(struct phantom_unit *unit)
 {
-	const struct phantom_float_ops *ops =
-		phantom_platform_has_avx2() ? &phantom_float_avx2 : &phantom_float_sse2;
+	const struct phantom_float_ops *const ops[PHANTOM_ARITHS] = {
+		[PHANTOM_ARITH_FLOAT] =
+			phantom_platform_has_avx2() ? &phantom_float_avx2 : &phantom_float_sse2,
+	};
 	int error;
 
 	phantom_kernel_clock_init(&unit->clock, phantom_unit_settings.cpu);
-	error = phantom_servo_init(&unit->servo, &unit->clock.clock, unit->device, ops, NULL,
+	error = phantom_servo_init(&unit->servo, &unit->clock.clock, unit->device, ops,
 				   PHANTOM_PATCHES_MAX);
 	if (error)
 		return error;
@@ -124,7 +126,7 @@ static void phantom_unit_introduce(const struct phantom_unit *unit)
 	dev_info(&unit->dev, "servo at %u Hz on CPU %d%s, float sections in %s\n",
 		 unit->servo.rate_hz, cpu,
 		 housekeeping_test_cpu(cpu, HK_TYPE_DOMAIN) ? " (not isolated)" : " (isolated)",
-		 unit->servo.float_ops->name);
+		 unit->servo.ops[PHANTOM_ARITH_FLOAT]->name);
 	if (!IS_ENABLED(CONFIG_PREEMPT_RT))
 		dev_warn(&unit->dev, "this kernel is not PREEMPT_RT: ticks will come late\n");
 }

@@ -195,6 +195,7 @@
 #define PHANTOM_ARITH_FLOAT 0
 #define PHANTOM_ARITH_FIXED 1
 #define PHANTOM_ARITH_DOUBLE 2
+#define PHANTOM_ARITHS 3
 
 /* ---- devices ------------------------------------------------------------- */
 #define PHANTOM_DEVICE_NONE 0
@@ -207,6 +208,8 @@
 #define PHANTOM_ISA_SSE2 1
 #define PHANTOM_ISA_AVX2 2
 #define PHANTOM_ISA_DOUBLE 3 /* user mode only */
+#define PHANTOM_ISA_AVX512 4 /* user mode only */
+#define PHANTOM_ISA_FIXED 5 /* no float at all: integers */
 
 /* ---- states and faults --------------------------------------------------- */
 #define PHANTOM_STATE_IDLE 0

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * block.h - a set of patches as the tick reads it: blocks of eight, one row per quantity.
+ * block.h - a set of patches as the tick reads it: blocks of sixteen, one row per quantity.
  *
  * Notation: corners x0 x1 x2 counter-clockwise from outside, unit vertex normals m0 m1 m2, unit
  * face normal g, contact radius R, stiffness k. Edge i goes from corner i to corner i + 1.
@@ -15,7 +15,7 @@
 
 #include "lanes.h"
 
-/* A row: one value for each of the eight patches of a block. */
+/* A row: one value for each of the sixteen patches of a block. */
 typedef lanes real_row[PHANTOM_STEPS];
 typedef nm_lanes nm_row[PHANTOM_STEPS];
 typedef u32 index_row[PHANTOM_BLOCK];
@@ -102,7 +102,7 @@ union scratch {
 };
 
 /* Of struct shell_scratch. */
-#define SHELL_SCRATCH_BYTES 1024
+#define SHELL_SCRATCH_BYTES 2048
 
 struct phantom_float_set {
 	u32 patch_count;

@@ -3,8 +3,8 @@
  * combine.h - from the forces of the patches to one force.
  *
  * The order of summation is part of the definition, so that every width gives the same bits:
- * column l (0 ... 7) adds patches l, l + 8, l + 16, ... in that order, then the columns are added
- * from 0 to 7. A patch without contact adds +0, so leaving out a whole step changes nothing.
+ * column l (0 ... 15) adds patches l, l + 16, l + 32, ... in that order, then the columns are added
+ * from 0 to 15. A patch without contact adds +0, so leaving out a whole step changes nothing.
  */
 #ifndef PHANTOM_FLOAT_COMBINE_H
 #define PHANTOM_FLOAT_COMBINE_H

@@ -3,8 +3,8 @@
  * lanes.h - the arithmetic of a float section: native vectors of PHANTOM_LANES reals.
  *
  * A unit (contact_*.c) chooses the real type and the width; everything above this file is one
- * description for all of them. Patches are kept in blocks of eight; a unit with fewer lanes takes
- * a block in several steps. Every operation here works lane by lane and is exactly rounded
+ * description for all of them. Patches are kept in blocks of sixteen; a unit with fewer lanes
+ * takes a block in several steps. Every operation here works lane by lane and is exactly rounded
  * (IEEE 754 add, multiply, divide, square root, convert), so the width never changes a bit.
  *
  * GCC vector extensions and builtins only: the kernel has no intrinsic headers and no libm.
@@ -14,7 +14,7 @@
 
 #include "phantom_float.h"
 
-#define PHANTOM_BLOCK 8 /* patches in a block */
+#define PHANTOM_BLOCK 16 /* patches in a block */
 #define PHANTOM_STEPS (PHANTOM_BLOCK / PHANTOM_LANES)
 
 #define LANES_INLINE static inline __attribute__((always_inline))
@@ -71,6 +71,29 @@ LANES_INLINE lanes lanes_max(lanes a, lanes b)
 LANES_INLINE u32 mask_bits(mask_lanes mask)
 {
 	return (u32)__builtin_ia32_movmskpd((lanes)mask);
+}
+#elif PHANTOM_LANES == 16
+#define LANES_ALL_ON ((unsigned short)-1)
+#define LANES_NEAREST 4 /* rounding as the control register says: to nearest */
+
+LANES_INLINE lanes lanes_sqrt(lanes a)
+{
+	return __builtin_ia32_sqrtps512_mask(a, a, LANES_ALL_ON, LANES_NEAREST);
+}
+
+LANES_INLINE lanes lanes_min(lanes a, lanes b)
+{
+	return __builtin_ia32_minps512_mask(a, b, a, LANES_ALL_ON, LANES_NEAREST);
+}
+
+LANES_INLINE lanes lanes_max(lanes a, lanes b)
+{
+	return __builtin_ia32_maxps512_mask(a, b, a, LANES_ALL_ON, LANES_NEAREST);
+}
+
+LANES_INLINE u32 mask_bits(mask_lanes mask)
+{
+	return __builtin_ia32_cvtd2mask512(mask);
 }
 #elif PHANTOM_LANES == 8
 LANES_INLINE lanes lanes_sqrt(lanes a)

@@ -9,7 +9,7 @@
  *
  * Calling context: between kernel_fpu_begin() and kernel_fpu_end(), opened by phantom_servo.c
  * only. One table of functions per instruction set; the servo picks one at load by what the CPU
- * has. The same inputs give the same bits from each of sse2 and avx2, in the kernel and in user
+ * has. The same inputs give the same bits from each of sse2, avx2 and avx512, in the kernel and in user
  * mode (-ffp-contract=off, fixed summation order).
  *
  * Source of the mathematics: Kabelac 2001, Algorithm 1 (`paper`); the shell projection
@@ -40,7 +40,7 @@ struct phantom_float_prepare {
 	u32 patch_count;
 	u32 face_count; /* the first of them; fans (PHANTOM_PATCH_EDGE, _CORNER) follow */
 	u32 material_count;
-	u32 first; /* this piece: patches first ... first + count - 1; first is a multiple of 8 */
+	u32 first; /* this piece: patches first ... first + count - 1; first is a multiple of 16 */
 	u32 count; /* <= PHANTOM_FLOAT_PREPARE_MAX */
 	u32 refused; /* out, added to: patches that cannot be computed (zero area, ...) */
 };
@@ -89,6 +89,8 @@ struct phantom_float_ops {
 
 extern const struct phantom_float_ops phantom_float_sse2;
 extern const struct phantom_float_ops phantom_float_avx2;
+/* User mode only: no virtual machine that the module is tested in has AVX-512. */
+extern const struct phantom_float_ops phantom_float_avx512;
 /* User mode only: the same source in float64. */
 extern const struct phantom_float_ops phantom_float_double;
 

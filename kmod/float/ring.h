@@ -20,49 +20,53 @@ LANES_INLINE bool feature_is_face(struct feature feature)
 	return feature.vertex[0] == PHANTOM_PATCH_NONE;
 }
 
-/* Half a row of a block's integers. */
+/* Four of a row of integers: they are compared at once in every unit. */
+#define RING_QUADS (PHANTOM_BLOCK / 4)
+
 typedef u32 index_quad __attribute__((vector_size(16), may_alias));
 typedef float index_sign __attribute__((vector_size(16)));
 
-LANES_INLINE index_quad ring_has(const struct block *block, u32 half, u32 vertex)
+LANES_INLINE index_quad ring_has(const struct block *block, u32 quad, u32 vertex)
 {
 	index_quad all = (index_quad){} + vertex, has = {};
 	u32 i;
 
 	for (i = 0; i < 3; i++)
-		has |= (index_quad)(*(const index_quad *)&block->vertex[i][4 * half] == all);
+		has |= (index_quad)(*(const index_quad *)&block->vertex[i][4 * quad] == all);
 	return has;
 }
 
-/* One bit for each lane. */
-LANES_INLINE u32 ring_lanes(index_quad low, index_quad high)
+/* One bit for each lane of the quad, where they are in the block. */
+LANES_INLINE u32 ring_lanes(index_quad has, u32 quad)
 {
-	return (u32)__builtin_ia32_movmskps((index_sign)low) |
-	       (u32)__builtin_ia32_movmskps((index_sign)high) << 4;
+	return (u32)__builtin_ia32_movmskps((index_sign)has) << 4 * quad;
 }
 
 /* Bit per lane of a block: the patch has one of those vertices. */
 static inline u32 ring_touches(const struct block *block, const u32 vertex[3])
 {
-	index_quad has[2] = {};
-	u32 half, i;
+	u32 quad, i, bits = 0;
 
-	for (half = 0; half < 2; half++)
+	for (quad = 0; quad < RING_QUADS; quad++) {
+		index_quad has = {};
+
 		for (i = 0; i < 3; i++)
-			has[half] |= ring_has(block, half, vertex[i]);
-	return ring_lanes(has[0], has[1]);
+			has |= ring_has(block, quad, vertex[i]);
+		bits |= ring_lanes(has, quad);
+	}
+	return bits;
 }
 
 /* Bit per lane of a block: the patch is part of the surface and has both vertices of the feature. */
 static inline u32 ring_bits(const struct block *block, struct feature feature)
 {
-	u32 half, bits, out = 0;
-	index_quad has[2];
+	u32 quad, bits = 0, out = 0;
 
-	for (half = 0; half < 2; half++)
-		has[half] = ring_has(block, half, feature.vertex[0]) &
-			    ring_has(block, half, feature.vertex[1]);
-	for (bits = ring_lanes(has[0], has[1]); bits; bits &= bits - 1) {
+	for (quad = 0; quad < RING_QUADS; quad++)
+		bits |= ring_lanes(ring_has(block, quad, feature.vertex[0]) &
+					   ring_has(block, quad, feature.vertex[1]),
+				   quad);
+	for (; bits; bits &= bits - 1) {
 		u32 lane = (u32)__builtin_ctz(bits);
 
 		if (row_lane(block->radius, lane) > 0)

@@ -13,7 +13,7 @@
 #include "effects/damping.h"
 
 /* What a tick's first piece may cost beside the shell: the path against every patch, twice. */
-#define SECTION_COST_PATH 400U /* of a block */
+#define SECTION_COST_PATH 800U /* of a block */
 
 /* Settles whether the tip is inside, and the force there. True: outside, the shell is to follow. */
 static inline bool section_settle(struct phantom_float_job *job, struct contact_force *out)

@@ -28,7 +28,7 @@
 #define SHELL_WORK 30000U /* after which a section ends */
 #define SHELL_PIECE 4000U /* a piece of small steps goes on for that long */
 
-#define SHELL_COST_BLOCK 250U /* of eight patches out of reach */
+#define SHELL_COST_BLOCK 500U /* of sixteen patches out of reach */
 #define SHELL_COST_ROOT 300U /* beside that, for each found */
 #define SHELL_COST_PAIR 10U /* of roots at a wall */
 #define SHELL_COST_SUM 30U /* of a root or contact */

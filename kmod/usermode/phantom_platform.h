@@ -197,6 +197,7 @@ typedef unsigned int __poll_t;
 void kernel_fpu_begin(void);
 void kernel_fpu_end(void);
 bool phantom_platform_has_avx2(void);
+bool phantom_platform_has_avx512(void); /* F and DQ */
 
 u64 ktime_get_ns(void);
 

@@ -73,6 +73,13 @@ int phantom_um_set_time(struct phantom_um *machine, uint64_t now_ns);
 int phantom_um_replay(struct phantom_um *machine, const struct phantom_tick *record,
 		      uint64_t due_ns);
 
+/*
+ * The float sections (phantom_float.h) that this CPU can run: the best in float32 first, NULL last.
+ * For tests and benchmarks, which call them without a machine.
+ */
+struct phantom_float_ops;
+const struct phantom_float_ops *const *phantom_um_sections(void);
+
 /* For reports: what the servo thread got. */
 struct phantom_um_thread_info {
 	int32_t fifo; /* 1 = SCHED_FIFO, 0 = the system did not allow it, -errno = not started */

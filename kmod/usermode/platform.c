@@ -63,6 +63,11 @@ bool phantom_platform_has_avx2(void)
 	return __builtin_cpu_supports("avx2");
 }
 
+bool phantom_platform_has_avx512(void)
+{
+	return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+}
+
 /* ---- numbers and time ---------------------------------------------------- */
 
 u32 int_sqrt64(u64 value)

@@ -109,18 +109,32 @@ static int um_device_init(struct phantom_um *machine, u32 max_force_un)
 
 /* ---- the machine --------------------------------------------------------- */
 
-static int um_choose_isa(u32 isa, const struct phantom_float_ops **ops,
-			 const struct phantom_float_ops **double_ops)
+const struct phantom_float_ops *const *phantom_um_sections(void)
 {
-	bool avx2 = phantom_platform_has_avx2();
+	static const struct phantom_float_ops *const all[] = {
+		&phantom_float_avx512, &phantom_float_avx2, &phantom_float_sse2,
+		&phantom_float_double, NULL};
 
-	*double_ops = isa == PHANTOM_ISA_DOUBLE ? &phantom_float_double : NULL;
-	*ops = avx2 ? &phantom_float_avx2 : &phantom_float_sse2;
-	if (isa == PHANTOM_ISA_SSE2)
-		*ops = &phantom_float_sse2;
-	if (isa > PHANTOM_ISA_DOUBLE || (isa == PHANTOM_ISA_AVX2 && !avx2))
+	if (phantom_platform_has_avx512())
+		return all;
+	return phantom_platform_has_avx2() ? all + 1 : all + 2;
+}
+
+/* By arithmetic. DOUBLE is offered only to who asks for it; float runs with the best then. */
+static int um_choose_ops(u32 isa, const struct phantom_float_ops *ops[PHANTOM_ARITHS])
+{
+	const struct phantom_float_ops *const *have = phantom_um_sections();
+	bool best = isa == PHANTOM_ISA_NONE || isa == PHANTOM_ISA_DOUBLE;
+
+	memset(ops, 0, PHANTOM_ARITHS * sizeof(ops[0]));
+	if (isa == PHANTOM_ISA_DOUBLE)
+		ops[PHANTOM_ARITH_DOUBLE] = &phantom_float_double;
+	if (isa == PHANTOM_ISA_FIXED)
 		return -EINVAL;
-	return 0;
+	for (; *have && !ops[PHANTOM_ARITH_FLOAT]; have++)
+		if (best || (*have)->isa == isa)
+			ops[PHANTOM_ARITH_FLOAT] = *have;
+	return ops[PHANTOM_ARITH_FLOAT] ? 0 : -EINVAL;
 }
 
 static struct phantom_clock *um_clock_init(struct phantom_um *machine,
@@ -145,7 +159,7 @@ static void um_clock_destroy(struct phantom_um *machine)
 
 static int um_init(struct phantom_um *machine, const struct phantom_um_config *config)
 {
-	const struct phantom_float_ops *ops, *double_ops;
+	const struct phantom_float_ops *ops[PHANTOM_ARITHS];
 	u32 force = config->max_force_un ? config->max_force_un : USERMODE_FORCE_DEFAULT_UN;
 	u32 patches = config->patches_max ? config->patches_max : PHANTOM_PATCHES_MAX;
 	struct phantom_clock *clock;
@@ -153,15 +167,14 @@ static int um_init(struct phantom_um *machine, const struct phantom_um_config *c
 
 	if (config->clock > PHANTOM_UM_CLOCK_VIRTUAL)
 		return -EINVAL;
-	error = um_choose_isa(config->isa, &ops, &double_ops);
+	error = um_choose_ops(config->isa, ops);
 	if (error)
 		return error;
 	error = um_device_init(machine, force);
 	if (error)
 		return error;
 	clock = um_clock_init(machine, config);
-	error = phantom_servo_init(&machine->servo, clock, &machine->device.device, ops, double_ops,
-				   patches);
+	error = phantom_servo_init(&machine->servo, clock, &machine->device.device, ops, patches);
 	if (error)
 		goto no_servo;
 	mutex_lock(&machine->servo.control);

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "phantom_usermode.h"
+
 namespace phantom::hard {
 
 namespace {
@@ -52,9 +54,19 @@ void Contact::Free::operator()(void* p) const
 
 std::vector<const phantom_float_ops*> sections()
 {
-    std::vector<const phantom_float_ops*> out{&phantom_float_sse2, &phantom_float_double};
-    if (__builtin_cpu_supports("avx2"))
-        out.push_back(&phantom_float_avx2);
+    const phantom_float_ops* const* all = phantom_um_sections();
+    std::size_t count = 0;
+    while (all[count])
+        ++count;
+    return {all, all + count};
+}
+
+std::vector<const phantom_float_ops*> wide_sections()
+{
+    std::vector<const phantom_float_ops*> out = sections();
+    std::erase_if(out, [](const phantom_float_ops* ops) {
+        return ops->isa != PHANTOM_ISA_AVX2 && ops->isa != PHANTOM_ISA_AVX512;
+    });
     return out;
 }
 

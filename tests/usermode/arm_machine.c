@@ -87,6 +87,9 @@ static const struct phantom_arm_link_ops link_ops = {
 
 /* ---- the machine ---- */
 
+static const struct phantom_float_ops* const sections[PHANTOM_ARITHS] = {[PHANTOM_ARITH_FLOAT] =
+                                                                             &phantom_float_sse2};
+
 struct arm_machine* arm_machine_create(uint32_t max_force_un)
 {
     struct arm_machine* machine = kzalloc(sizeof(*machine), GFP_KERNEL);
@@ -95,8 +98,8 @@ struct arm_machine* arm_machine_create(uint32_t max_force_un)
         return NULL;
     phantom_virtual_clock_init(&machine->clock);
     phantom_arm_init(&machine->arm, &phantom_arm_woodenhaptics, &link_ops, max_force_un);
-    if (phantom_servo_init(&machine->servo, &machine->clock.clock, &machine->arm.device, &phantom_float_sse2,
-                           NULL, PHANTOM_PATCHES_MAX)) {
+    if (phantom_servo_init(&machine->servo, &machine->clock.clock, &machine->arm.device, sections,
+                           PHANTOM_PATCHES_MAX)) {
         kfree(machine);
         return NULL;
     }

@@ -336,7 +336,12 @@ TEST(Create, RefusesWhatItCannotBe)
         error_of(
             {.clock = 1, .rate_hz = 0, .cpu = -1, .max_force_un = 100'000'001, .isa = 0, .patches_max = 0}),
         -EINVAL);
-    EXPECT_EQ(error_of({.clock = 1, .rate_hz = 0, .cpu = -1, .max_force_un = 0, .isa = 4, .patches_max = 0}),
+    EXPECT_EQ(error_of({.clock = 1,
+                        .rate_hz = 0,
+                        .cpu = -1,
+                        .max_force_un = 0,
+                        .isa = PHANTOM_ISA_FIXED + 1,
+                        .patches_max = 0}),
               -EINVAL);
     EXPECT_EQ(
         error_of({.clock = 1, .rate_hz = 10000, .cpu = -1, .max_force_un = 1, .isa = 1, .patches_max = 0}),

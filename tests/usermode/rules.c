@@ -12,14 +12,16 @@
 
 static struct phantom_virtual_clock virtual_clock;
 static struct phantom_servo servo;
+static const struct phantom_float_ops* const sections[PHANTOM_ARITHS] = {[PHANTOM_ARITH_FLOAT] =
+                                                                             &phantom_float_sse2};
 
 static void make_servo(void)
 {
     struct phantom_device* device = phantom_device_sim_create(1000000);
 
     phantom_virtual_clock_init(&virtual_clock);
-    if (IS_ERR(device) || phantom_servo_init(&servo, &virtual_clock.clock, device, &phantom_float_sse2, NULL,
-                                             PHANTOM_PATCHES_MAX))
+    if (IS_ERR(device) ||
+        phantom_servo_init(&servo, &virtual_clock.clock, device, sections, PHANTOM_PATCHES_MAX))
         phantom_platform_broken("a servo can be made", __func__);
 }
 

@@ -59,10 +59,9 @@ const char* state_name(std::uint32_t state)
 
 const char* isa_name(std::uint32_t isa)
 {
-    constexpr Word isas[] = {{"none", PHANTOM_ISA_NONE},
-                             {"sse2", PHANTOM_ISA_SSE2},
-                             {"avx2", PHANTOM_ISA_AVX2},
-                             {"double", PHANTOM_ISA_DOUBLE}};
+    constexpr Word isas[] = {{"none", PHANTOM_ISA_NONE},     {"sse2", PHANTOM_ISA_SSE2},
+                             {"avx2", PHANTOM_ISA_AVX2},     {"avx512", PHANTOM_ISA_AVX512},
+                             {"double", PHANTOM_ISA_DOUBLE}, {"fixed", PHANTOM_ISA_FIXED}};
     return text_of(isa, isas);
 }
 

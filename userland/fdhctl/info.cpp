@@ -56,7 +56,7 @@ Result<Facts> gather(const SceneOptions& options)
     if (!model)
         return model.error();
     facts.model = *model;
-    const std::uint32_t isa = __builtin_cpu_supports("avx2") ? PHANTOM_ISA_AVX2 : PHANTOM_ISA_SSE2;
+    const std::uint32_t isa = study::tick_sections().front();
     Result<study::TickCost> cost = study::measure_tick(facts.scene, tree, facts.model, isa, budget);
     if (!cost)
         return cost.error();

@@ -28,6 +28,7 @@ std::uint32_t isa_number(const std::string& word)
 {
     return word == "sse2"     ? PHANTOM_ISA_SSE2
            : word == "avx2"   ? PHANTOM_ISA_AVX2
+           : word == "avx512" ? PHANTOM_ISA_AVX512
            : word == "double" ? PHANTOM_ISA_DOUBLE
                               : PHANTOM_ISA_NONE;
 }
@@ -164,7 +165,7 @@ Run add_replay(CLI::App& app)
     app.add_option("--isa", options->isa,
                    "instruction set of the tick; double: the same inputs in double, differences are told and "
                    "no failure")
-        ->check(CLI::IsMember({"best", "sse2", "avx2", "double"}))
+        ->check(CLI::IsMember({"best", "sse2", "avx2", "avx512", "double"}))
         ->type_name("best|sse2|avx2|double")
         ->capture_default_str();
     app.add_flag("--json", options->json, "one line of JSON a recording");

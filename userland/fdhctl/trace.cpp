@@ -59,7 +59,10 @@ std::string summary_text(const study::TraceSummary& sum)
 
 std::uint32_t isa_number(const std::string& word)
 {
-    return word == "sse2" ? PHANTOM_ISA_SSE2 : word == "avx2" ? PHANTOM_ISA_AVX2 : PHANTOM_ISA_NONE;
+    return word == "sse2"     ? PHANTOM_ISA_SSE2
+           : word == "avx2"   ? PHANTOM_ISA_AVX2
+           : word == "avx512" ? PHANTOM_ISA_AVX512
+                              : PHANTOM_ISA_NONE;
 }
 
 /// To the file whole or not at all, or to stdout.
@@ -132,7 +135,7 @@ Run add_trace(CLI::App& app)
         ->type_name("on|off")
         ->capture_default_str();
     app.add_option("--isa", options->isa, "instruction set of the tick")
-        ->check(CLI::IsMember({"best", "sse2", "avx2"}))
+        ->check(CLI::IsMember({"best", "sse2", "avx2", "avx512"}))
         ->type_name("best|sse2|avx2")
         ->capture_default_str();
     app.add_flag("-v,--verbose", options->verbose, "a summary on stderr");

@@ -101,9 +101,7 @@ Status measure_ticks(const scene::Scene& scene, const fdh::SceneTree<14>& tree, 
                      BenchReport& report)
 {
     for (const char* model : {"paper", "projected"}) {
-        for (const std::uint32_t isa : {PHANTOM_ISA_SSE2, PHANTOM_ISA_AVX2}) {
-            if (isa == PHANTOM_ISA_AVX2 && !__builtin_cpu_supports("avx2"))
-                continue;
+        for (const std::uint32_t isa : tick_sections()) {
             const Result<phantom_model> words =
                 device::model_from_words(model, "bounded", "paper", "float", 2);
             if (!words)

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "study/tick_cost.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <random>
 
+#include <fmt/format.h>
+
+#include "device/device.hpp"
 #include "feeder/feeder.hpp"
 #include "feeder/path.hpp"
+#include "phantom_usermode.h"
 #include "study/surface_point.hpp"
 
 extern "C" {
@@ -23,9 +28,13 @@ constexpr std::size_t tips_per_set = 128;
 /// The tip moves this far between ticks: a hand at 50 mm/s, sampled at 1 kHz.
 constexpr double tip_step_mm = 0.05;
 
-const phantom_float_ops& ops_of(std::uint32_t isa)
+/// nullptr: this processor has it not.
+const phantom_float_ops* ops_of(std::uint32_t isa)
 {
-    return isa == PHANTOM_ISA_AVX2 ? phantom_float_avx2 : phantom_float_sse2;
+    for (const phantom_float_ops* const* at = phantom_um_sections(); *at; ++at)
+        if ((*at)->isa == isa)
+            return *at;
+    return nullptr;
 }
 
 struct FreeSet {
@@ -45,6 +54,9 @@ FloatSet prepared(const phantom_float_ops& ops, const device::PatchSet& set, dou
     piece.materials = set.materials.data();
     piece.patch_count = static_cast<u32>(set.patches.size());
     piece.material_count = static_cast<u32>(set.materials.size());
+    piece.face_count =
+        static_cast<u32>(std::count_if(set.patches.begin(), set.patches.end(),
+                                       [](const phantom_patch& p) { return p.kind == PHANTOM_PATCH_FACE; }));
     microseconds = 1e-3 * nanoseconds_of([&] {
                        do {
                            piece.count =
@@ -132,9 +144,21 @@ std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t cou
     return points;
 }
 
+std::vector<std::uint32_t> tick_sections()
+{
+    std::vector<std::uint32_t> out;
+    for (const phantom_float_ops* const* at = phantom_um_sections(); *at; ++at)
+        if ((*at)->isa != PHANTOM_ISA_DOUBLE)
+            out.push_back((*at)->isa);
+    return out;
+}
+
 Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
                               const phantom_model& model, std::uint32_t isa, std::uint32_t budget)
 {
+    const phantom_float_ops* const ops = ops_of(isa);
+    if (!ops)
+        return Error{"", fmt::format("this processor has no {}", device::isa_name(isa))};
     device::UsermodeOptions usermode;
     usermode.virtual_clock = true;
     usermode.isa = isa;
@@ -146,7 +170,6 @@ Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14
     phantom_start start{};
     start.flags = PHANTOM_START_LIMITS_OFF;
 
-    const phantom_float_ops& ops = ops_of(isa);
     const feeder::FeederOptions search;
     feeder::SetBuilder builder(scene);
     device::PatchSet set;
@@ -164,10 +187,10 @@ Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14
             continue;
         cost.patches = std::max(cost.patches, static_cast<std::uint32_t>(set.patches.size()));
         double microseconds = 0;
-        const FloatSet floats = prepared(ops, set, microseconds);
+        const FloatSet floats = prepared(*ops, set, microseconds);
         prepare_us.push_back(microseconds);
         const std::vector<Vec3> tips = wander(point, random);
-        time_float_ticks(ops, model, set, floats, tips, float_ns, cost.contacts);
+        time_float_ticks(*ops, model, set, floats, tips, float_ns, cost.contacts);
         if (Result<bool> taken = device->try_submit(set); !taken)
             return taken.error();
         if (!started) {

@@ -17,6 +17,9 @@ namespace phantom::study {
 /// Points half a contact radius above the middles of faces spread over the scene. Repeatable.
 std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed);
 
+/// The instruction sets of float32 that this processor has, the best first (PHANTOM_ISA_...).
+std::vector<std::uint32_t> tick_sections();
+
 struct TickCost {
     std::uint32_t isa = PHANTOM_ISA_NONE;
     std::uint32_t patches = 0; ///< in the sets, at most
@@ -27,7 +30,7 @@ struct TickCost {
 };
 
 /// Sets of `budget` triangles round points near the surface; in each the tip moves by small steps in
-/// contact. isa SSE2 or AVX2; fails when the processor has it not.
+/// contact. isa: one of tick_sections(), else it fails.
 Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
                               const phantom_model& model, std::uint32_t isa, std::uint32_t budget);
 
