@@ -74,10 +74,11 @@ static void phantom_servo_float_tick(struct phantom_servo *servo,
 
 	servo->job.more = 0;
 	do {
-		u64 begin = phantom_servo_open_section(servo);
+		u64 begin = ops->integer ? 0 : phantom_servo_open_section(servo);
 
 		more = ops->tick(&servo->job);
-		phantom_servo_close_section(servo, begin);
+		if (!ops->integer)
+			phantom_servo_close_section(servo, begin);
 	} while (more);
 }
 
@@ -125,10 +126,13 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 
 		prepare.count =
 			min_t(u32, slot->patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);
-		kernel_fpu_begin();
-		phantom_context_section();
+		if (!slot->ops->integer) {
+			kernel_fpu_begin();
+			phantom_context_section();
+		}
 		slot->ops->prepare(&prepare);
-		kernel_fpu_end();
+		if (!slot->ops->integer)
+			kernel_fpu_end();
 		length = min_t(u64, phantom_servo_now(servo) - begin, U32_MAX);
 		if (length > READ_ONCE(servo->prepare_max_ns))
 			WRITE_ONCE(servo->prepare_max_ns, (u32)length);

@@ -71,6 +71,7 @@ static int phantom_unit_init(struct phantom_unit *unit)
 	const struct phantom_float_ops *const ops[PHANTOM_ARITHS] = {
 		[PHANTOM_ARITH_FLOAT] =
 			phantom_platform_has_avx2() ? &phantom_float_avx2 : &phantom_float_sse2,
+		[PHANTOM_ARITH_FIXED] = &phantom_float_fixed,
 	};
 	int error;
 

@@ -128,7 +128,7 @@ struct phantom_float_set {
  */
 LANES_INLINE real rounding_mm(const struct phantom_float_set *set)
 {
-	return (real)1e-6 * (1 + set->extent + set->radius);
+	return mul(REAL(1e-6), REAL(1) + set->extent + set->radius);
 }
 
 LANES_INLINE struct paper_step *scratch_paper(const struct phantom_float_set *set)
@@ -185,9 +185,9 @@ LANES_INLINE struct real3 from_corner_lane(const struct block *block, u32 lane, 
 	u32 step = lane / PHANTOM_LANES, l = lane % PHANTOM_LANES;
 
 	return (struct real3){
-		(real)((coordinate)nm[0] - block->corner[corner][0][step][l]) * MM_PER_NM,
-		(real)((coordinate)nm[1] - block->corner[corner][1][step][l]) * MM_PER_NM,
-		(real)((coordinate)nm[2] - block->corner[corner][2][step][l]) * MM_PER_NM,
+		real_from_nm((s64)nm[0] - (s64)block->corner[corner][0][step][l]),
+		real_from_nm((s64)nm[1] - (s64)block->corner[corner][1][step][l]),
+		real_from_nm((s64)nm[2] - (s64)block->corner[corner][2][step][l]),
 	};
 }
 
@@ -198,7 +198,7 @@ LANES_INLINE mask_lanes within_reach(const struct block *block, u32 step, struct
 	struct lanes3 away = lanes3_sub(q, row3_step(&block->centre, step));
 	lanes far = reach + block->extent[step];
 
-	return (lanes3_dot(away, away) <= far * far) & (far >= 0);
+	return (lanes3_dot(away, away) <= mul(far, far)) & (far >= 0);
 }
 
 #endif /* PHANTOM_FLOAT_BLOCK_H */

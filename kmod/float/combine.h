@@ -12,7 +12,7 @@
 #include "block.h"
 
 /* combine=paper: below this part of max |s| the sum has no direction and the force is 0. */
-#define OPPOSED ((real)1e-9)
+#define OPPOSED REAL(1e-9)
 
 /* What a contact model hands on. */
 struct contact_force {
@@ -66,11 +66,11 @@ static inline struct real3 combine_paper(struct real3 sum, real most, u32 rule)
 {
 	real length = real3_length(sum);
 
-	if (!(length > OPPOSED * most))
+	if (!(length > mul(OPPOSED, most)))
 		return (struct real3){0, 0, 0};
 	if (rule == PHANTOM_COMBINE_PAPER)
-		return real3_scale(sum, most / length);
-	return real3_scale(sum, real_min(1, most / length));
+		return real3_scale(sum, divide(most, length));
+	return real3_scale(sum, real_min(REAL(1), divide(most, length)));
 }
 
 /* The normal of a contact is the direction of its force. */
@@ -79,7 +79,7 @@ static inline void contact_direction(struct contact_force *out)
 	real length = real3_length(out->force);
 
 	if (length > 0)
-		out->normal = real3_scale(out->force, 1 / length);
+		out->normal = real3_over(out->force, length);
 }
 
 #endif /* PHANTOM_FLOAT_COMBINE_H */

@@ -39,27 +39,27 @@
 #define CONSTRAINED_RING_MAX 12
 
 /* Normals at one point that differ by less than that are the same. */
-#define CONSTRAINED_SAME_NORMAL ((real)1e-3)
+#define CONSTRAINED_SAME_NORMAL REAL(1e-3)
 
 /* Does the set promise that V's surroundings are in it? */
 static inline bool constrained_covered(const struct phantom_float_job *job)
 {
 	struct real3 away = nm_way(job->centre_nm, job->proxy_nm);
 
-	return real3_length(away) < (real)job->radius_nm * MM_PER_NM;
+	return real3_length(away) < real_from_nm(job->radius_nm);
 }
 
 /* The largest cosine between w and an edge of that patch that ends at the vertex. */
 static inline real constrained_towards(const struct block *block, u32 lane, u32 vertex,
 				       struct real3 w)
 {
-	real most = -1e30f;
+	real most = -REAL_MOST;
 	u32 i;
 
 	for (i = 0; i < 3; i++) {
 		const struct paper_edge *edge = &block->edge[i];
-		real along = real3_dot(row3_lane(&edge->along, lane), w) *
-			     real_sqrt(row_lane(edge->inverse_length2, lane));
+		real along = mul(real3_dot(row3_lane(&edge->along, lane), w),
+				 real_sqrt(row_lane(edge->inverse_length2, lane)));
 
 		if (block->vertex[i][lane] == vertex)
 			most = real_max(most, along);
@@ -73,8 +73,8 @@ static inline real constrained_towards(const struct block *block, u32 lane, u32 
 static inline bool constrained_over(const struct walk *walk)
 {
 	const struct phantom_float_set *set = walk->job->set;
-	struct real3 w = real3_scale(walk->way, -1);
-	real towards = -1e30f, height = 0;
+	struct real3 w = real3_scale(walk->way, REAL(-1));
+	real towards = -REAL_MOST, height = 0;
 	u32 i;
 
 	if (walk->held_count > 1) {
@@ -153,7 +153,7 @@ static inline struct real3 constrained_normal(const struct walk *walk)
 		other = penetration_normal(job, patch[i]);
 		away = real3_sub(other, n);
 		sum = real3_add(sum, other);
-		if (real3_dot(away, away) > CONSTRAINED_SAME_NORMAL * CONSTRAINED_SAME_NORMAL)
+		if (real3_dot(away, away) > mul(CONSTRAINED_SAME_NORMAL, CONSTRAINED_SAME_NORMAL))
 			same = false;
 	}
 	if (same)
@@ -164,16 +164,16 @@ static inline struct real3 constrained_normal(const struct walk *walk)
 		real c = real3_dot(g0, g1), w0 = real3_dot(g0, walk->way);
 		real w1 = real3_dot(g1, walk->way);
 
-		a = real_max(w0 - c * w1, 0);
-		b = real_max(w1 - c * w0, 0);
+		a = real_max(w0 - mul(c, w1), 0);
+		b = real_max(w1 - mul(c, w0), 0);
 		if (a + b > 0)
-			sum = real3_add(real3_scale(n, a / (a + b)),
-					real3_scale(other, b / (a + b)));
+			sum = real3_add(real3_scale(n, divide(a, a + b)),
+					real3_scale(other, divide(b, a + b)));
 	} else if (real3_length(walk->way) > 4 * walk->still) {
 		sum = walk->way;
 	}
 	a = real3_length(sum);
-	return a > 0 ? real3_scale(sum, 1 / a) : n;
+	return a > 0 ? real3_over(sum, a) : n;
 }
 
 /* The walk is over, and the tip over the surface it ended on. */
@@ -197,7 +197,7 @@ static inline bool constrained_enter(struct walk *walk, struct phantom_float_job
 		walk_down(walk, job, in.patch);
 		if (!constrained_leaves(walk))
 			return true;
-		after = in.along + CROSSING_APART / path->length;
+		after = in.along + divide(CROSSING_APART, path->length);
 	}
 	penetration_leave(job);
 	return false;
@@ -208,7 +208,7 @@ static inline bool constrained_settle(struct walk *walk, struct phantom_float_jo
 {
 	struct segment path;
 	struct crossing out;
-	real after = -1;
+	real after = REAL(-1);
 
 	if (job->inside) {
 		u32 patch = penetration_find_patch(job);
@@ -221,9 +221,9 @@ static inline bool constrained_settle(struct walk *walk, struct phantom_float_jo
 		penetration_leave(job);
 		if (!job->path_valid || !segment_set(&path, job->previous_nm, job->tip_nm))
 			return false;
-		out = crossing_find(job->set, &path, CROSSING_OUTWARD, true, -1);
+		out = crossing_find(job->set, &path, CROSSING_OUTWARD, true, REAL(-1));
 		if (out.patch != PHANTOM_PATCH_NONE)
-			after = out.along + CROSSING_APART / path.length;
+			after = out.along + divide(CROSSING_APART, path.length);
 	} else if (!job->path_valid || !segment_set(&path, job->previous_nm, job->tip_nm)) {
 		return false;
 	}

@@ -51,7 +51,7 @@ static inline bool segment_set(struct segment *segment, const s32 begin_nm[3], c
 	for (axis = 0; axis < 3; axis++) {
 		segment->begin_nm[axis] = begin_nm[axis];
 		segment->way_nm[axis] = (s64)end_nm[axis] - begin_nm[axis];
-		way[axis] = (real)segment->way_nm[axis] * MM_PER_NM;
+		way[axis] = real_from_nm(segment->way_nm[axis]);
 		if (real_abs(way[axis]) > real_abs(way[segment->z]))
 			segment->z = axis;
 	}
@@ -59,10 +59,12 @@ static inline bool segment_set(struct segment *segment, const s32 begin_nm[3], c
 	segment->y = (segment->z + 2) % 3;
 	if (way[segment->z] == 0)
 		return false;
-	segment->inverse_z = 1 / way[segment->z];
-	segment->shear_x = way[segment->x] * segment->inverse_z;
-	segment->shear_y = way[segment->y] * segment->inverse_z;
-	segment->length = real_sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+	segment->inverse_z = divide(REAL(1), way[segment->z]);
+	segment->shear_x =
+		real_ratio_of_nm(segment->way_nm[segment->x], segment->way_nm[segment->z]);
+	segment->shear_y =
+		real_ratio_of_nm(segment->way_nm[segment->y], segment->way_nm[segment->z]);
+	segment->length = real3_length((struct real3){way[0], way[1], way[2]});
 	return true;
 }
 
@@ -82,10 +84,7 @@ static inline void nm_offset(const s32 from[3], struct real3 by, s32 out[3])
 	u32 axis;
 
 	for (axis = 0; axis < 3; axis++) {
-		real step = real_clamp(way[axis] * NM_PER_MM, (real)-4e9, (real)4e9);
-
-		out[axis] =
-			nm_saturate(from[axis] + (s64)(step + (step < 0 ? (real)-0.5 : (real)0.5)));
+		out[axis] = nm_saturate(from[axis] + real_to_nm(way[axis]));
 	}
 }
 
@@ -93,9 +92,9 @@ static inline void nm_offset(const s32 from[3], struct real3 by, s32 out[3])
 static inline struct real3 nm_way(const s32 from[3], const s32 to[3])
 {
 	return (struct real3){
-		(real)((s64)to[0] - from[0]) * MM_PER_NM,
-		(real)((s64)to[1] - from[1]) * MM_PER_NM,
-		(real)((s64)to[2] - from[2]) * MM_PER_NM,
+		real_from_nm((s64)to[0] - from[0]),
+		real_from_nm((s64)to[1] - from[1]),
+		real_from_nm((s64)to[2] - from[2]),
 	};
 }
 
@@ -105,10 +104,8 @@ static inline void segment_point(const struct segment *segment, real along, s32 
 	u32 axis;
 
 	for (axis = 0; axis < 3; axis++) {
-		real step = along * (real)segment->way_nm[axis];
-
 		out_nm[axis] = (s32)(segment->begin_nm[axis] +
-				     (s64)(step + (step < 0 ? (real)-0.5 : (real)0.5)));
+				     real_part_of_nm(along, segment->way_nm[axis]));
 	}
 }
 
@@ -125,9 +122,9 @@ LANES_INLINE struct sheared crossing_corner(const struct block *block, u32 step,
 
 	out.z = nm_difference(block->corner[corner][z][step], segment->begin.axis[z]);
 	out.x = nm_difference(block->corner[corner][x][step], segment->begin.axis[x]) -
-		segment->shear_x * out.z;
+		mul(lanes_all(segment->shear_x), out.z);
 	out.y = nm_difference(block->corner[corner][y][step], segment->begin.axis[y]) -
-		segment->shear_y * out.z;
+		mul(lanes_all(segment->shear_y), out.z);
 	return out;
 }
 
@@ -142,18 +139,19 @@ LANES_INLINE mask_lanes crossing_inside(const struct block *block, u32 step,
 	struct sheared a = crossing_corner(block, step, 0, segment);
 	struct sheared b = crossing_corner(block, step, 1, segment);
 	struct sheared c = crossing_corner(block, step, 2, segment);
-	lanes u = b.x * c.y - b.y * c.x;
-	lanes v = c.x * a.y - c.y * a.x;
-	lanes w = a.x * b.y - a.y * b.x;
+	lanes u = mul_sub(b.x, c.y, b.y, c.x);
+	lanes v = mul_sub(c.x, a.y, c.y, a.x);
+	lanes w = mul_sub(a.x, b.y, a.y, b.x);
 	lanes low = lanes_min(lanes_min(u, v), w), high = lanes_max(lanes_max(u, v), w);
 	/* twice the area as seen along +z: positive where the way goes out of the front */
 	lanes area = u + v + w;
 	lanes outward = segment->inverse_z > 0 ? area : -area;
 	mask_lanes right_way = way == CROSSING_OUTWARD ? outward > 0 : outward < 0;
 
-	*along = (u * a.z + v * b.z + w * c.z) / lanes_select(right_way, area, lanes_all(1)) *
-		 segment->inverse_z;
-	*along = lanes_min(lanes_max(*along, lanes_all(0)), lanes_all(1));
+	*along = mul(divide(mul_sum(u, a.z, v, b.z, w, c.z),
+			    lanes_select(right_way, area, lanes_all(REAL(1)))),
+		     lanes_all(segment->inverse_z));
+	*along = lanes_min(lanes_max(*along, lanes_all(0)), lanes_all(REAL(1)));
 	return right_way & ((low >= 0) | (high <= 0));
 }
 

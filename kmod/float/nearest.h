@@ -27,11 +27,11 @@ static inline void nearest_evaluate(const struct block *block, u32 step, const s
 {
 	struct lanes3 g = row3_step(&block->face_normal, step);
 	struct lanes3 q = from_corner(block, step, 0, tip);
-	lanes height = lanes3_dot(g, q), least = lanes_all((real)1e30);
-	mask_lanes over = height == height;
+	lanes height = lanes3_dot(g, q), least = lanes_all(REAL_MOST);
+	mask_lanes over = (mask_lanes){} == 0;
 	u32 i;
 
-	out->way = lanes3_scale(q, lanes_all(-1));
+	out->way = lanes3_scale(q, lanes_all(REAL(-1)));
 	out->edge = lanes_all(0);
 	out->along = lanes_all(0);
 	for (i = 0; i < 3; i++) {
@@ -42,8 +42,8 @@ static inline void nearest_evaluate(const struct block *block, u32 step, const s
 		if (i)
 			q = from_corner(block, step, i, tip);
 		over &= lanes3_dot(lanes3_cross(g, e), q) >= lanes_all(0);
-		t = lanes3_dot(e, q) * block->edge[i].inverse_length2[step];
-		t = lanes_min(lanes_max(t, lanes_all(0)), lanes_all(1));
+		t = mul(lanes3_dot(e, q), block->edge[i].inverse_length2[step]);
+		t = lanes_min(lanes_max(t, lanes_all(0)), lanes_all(REAL(1)));
 		way = lanes3_sub(lanes3_scale(e, t), q);
 		length2 = lanes3_dot(way, way);
 		nearer = length2 < least;
@@ -51,13 +51,13 @@ static inline void nearest_evaluate(const struct block *block, u32 step, const s
 		out->way.x = lanes_select(nearer, way.x, out->way.x);
 		out->way.y = lanes_select(nearer, way.y, out->way.y);
 		out->way.z = lanes_select(nearer, way.z, out->way.z);
-		out->edge = lanes_select(nearer, lanes_all((real)i), out->edge);
+		out->edge = lanes_select(nearer, lanes_all((s32)i), out->edge);
 		out->along = lanes_select(nearer, t, out->along);
 	}
-	out->way.x = lanes_select(over, g.x * -height, out->way.x);
-	out->way.y = lanes_select(over, g.y * -height, out->way.y);
-	out->way.z = lanes_select(over, g.z * -height, out->way.z);
-	out->edge = lanes_select(over, lanes_all(-1), out->edge);
+	out->way.x = lanes_select(over, mul(g.x, -height), out->way.x);
+	out->way.y = lanes_select(over, mul(g.y, -height), out->way.y);
+	out->way.z = lanes_select(over, mul(g.z, -height), out->way.z);
+	out->edge = lanes_select(over, lanes_all(REAL(-1)), out->edge);
 }
 
 /* On which feature of its patch the nearest point of one lane lies. */
@@ -72,7 +72,7 @@ static inline struct feature nearest_feature(const struct block *block, u32 lane
 	edge = (u32)at->edge[l];
 	from = block->vertex[edge][lane];
 	to = block->vertex[(edge + 1) % 3][lane];
-	out.vertex[0] = at->along[l] < 1 ? from : to;
+	out.vertex[0] = at->along[l] < REAL(1) ? from : to;
 	out.vertex[1] = at->along[l] > 0 ? to : from;
 	return out;
 }

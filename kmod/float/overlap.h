@@ -13,7 +13,7 @@
 #include "paper.h"
 
 /* Of the segment's length. */
-#define OVERLAP_ENDS ((real)1e-6)
+#define OVERLAP_ENDS REAL(1e-6)
 
 /* The planes through the tip and the edges of a step's triangles. */
 static inline void overlap_planes(const struct phantom_float_set *set, struct paper_step *at,
@@ -42,8 +42,8 @@ LANES_INLINE mask_lanes overlap_crossed(const struct phantom_float_set *set,
 	/* the plane of the triangle is met at d / -(g . way) of the segment */
 	lanes down = -lanes3_dot(row3_step(&block->face_normal, at->step), way);
 
-	return ((low >= 0) | (high <= 0)) & (at->height > OVERLAP_ENDS * down) &
-	       (at->height < (1 - OVERLAP_ENDS) * down) & at->contact;
+	return ((low >= 0) | (high <= 0)) & (at->height > mul(lanes_all(OVERLAP_ENDS), down)) &
+	       (at->height < mul(lanes_all(REAL(1) - OVERLAP_ENDS), down)) & at->contact;
 }
 
 /* The edges of its triangle on which D lies, as bits 0 ... 2. */
@@ -61,7 +61,7 @@ static inline u32 overlap_edges_of_foot(const struct block *block, u32 lane, str
 		struct real3 e = row3_lane(&block->edge[i].along, lane);
 		real away = real3_dot(real3_cross(g, e), from[i]);
 
-		if (away * away <= rounding * rounding * real3_dot(e, e))
+		if (mul(away, away) <= mul(mul(rounding, rounding), real3_dot(e, e)))
 			edges |= 1U << i;
 	}
 	return edges;

@@ -27,14 +27,10 @@
 #include "block.h"
 
 /* Relative to the largest wall distance; its square is still a normal float32. */
-#define VANISHING ((real)1e-18)
+#define VANISHING REAL_VANISHING
 
 /* Cosine between n and g. */
-#define GRAZING ((real)1e-4)
-
-/* Keeps a division by the length of a vector that may be zero finite. */
-#define TINY ((real)1e-30)
-#define SMALLEST ((real)1e-37) /* above float32's smallest normal number */
+#define GRAZING REAL(1e-4)
 
 struct paper_wall {
 	struct lanes3 normal; /* n' */
@@ -44,39 +40,41 @@ struct paper_wall {
 LANES_INLINE struct paper_wall paper_wall(const struct paper_edge *edge, u32 step, struct lanes3 q)
 {
 	struct lanes3 along = row3_step(&edge->along, step);
-	lanes t = lanes3_dot(along, q) * edge->inverse_length2[step];
+	lanes t = mul(lanes3_dot(along, q), edge->inverse_length2[step]);
 	struct paper_wall out;
 	struct lanes3 wall;
 
-	t = lanes_min(lanes_max(t, lanes_all(0)), lanes_all(1));
+	t = lanes_min(lanes_max(t, lanes_all(0)), lanes_all(REAL(1)));
 	out.normal = lanes3_add(row3_step(&edge->normal, step),
 				lanes3_scale(row3_step(&edge->normal_along, step), t));
 	wall = lanes3_add(row3_step(&edge->wall, step),
 			  lanes3_scale(row3_step(&edge->wall_along, step), t));
 	q = lanes3_sub(q, lanes3_scale(along, t));
-	out.distance = lanes3_dot(wall, q) * lanes_sqrt(lanes3_dot(out.normal, out.normal) /
-							(lanes3_dot(wall, wall) + lanes_all(TINY)));
+	out.distance =
+		mul(lanes3_dot(wall, q),
+		    lanes_sqrt(divide(lanes3_dot(out.normal, out.normal),
+				      lanes_max(lanes3_dot(wall, wall), lanes_all(REAL_TINY)))));
 	return out;
 }
 
-/* n (not normalised) from the three walls; distances are not negative. */
+/* n (of any length) from the three walls; distances are not negative. */
 LANES_INLINE struct lanes3 paper_normal(const struct paper_wall wall[3])
 {
-	const lanes zero = lanes_all(0), one = lanes_all(1);
+	const lanes zero = lanes_all(0), one = lanes_all(REAL(1));
 	lanes most = lanes_max(lanes_max(wall[0].distance, wall[1].distance), wall[2].distance);
-	lanes scale = one / lanes_max(most, lanes_all(TINY));
+	lanes scale = divide(one, lanes_max(most, lanes_all(REAL_TINY)));
 	lanes d[3], weight[3];
 	mask_lanes vanished;
 	struct lanes3 n;
 	u32 i;
 
 	for (i = 0; i < 3; i++) {
-		d[i] = wall[i].distance * scale;
+		d[i] = mul(wall[i].distance, scale);
 		d[i] = lanes_keep(d[i] >= VANISHING, d[i]);
 	}
-	weight[0] = d[1] * d[2];
-	weight[1] = d[0] * d[2];
-	weight[2] = d[0] * d[1];
+	weight[0] = mul(d[1], d[2]);
+	weight[1] = mul(d[0], d[2]);
+	weight[2] = mul(d[0], d[1]);
 	vanished = (weight[0] == zero) & (weight[1] == zero) & (weight[2] == zero);
 	for (i = 0; i < 3; i++)
 		weight[i] = lanes_select(vanished, lanes_keep(d[i] == zero, one), weight[i]);
@@ -108,7 +106,7 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	mask_lanes contact = shell_candidates(block, step, q, height, rounding);
 	struct paper_wall wall[3];
 	struct lanes3 n;
-	lanes inverse, cosine;
+	lanes cosine;
 	u32 i;
 
 	if (!mask_bits(contact))
@@ -123,11 +121,10 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	if (!mask_bits(contact))
 		return false;
 	n = paper_normal(wall);
-	inverse = lanes_all(1) / lanes_sqrt(lanes_max(lanes3_dot(n, n), lanes_all(SMALLEST)));
-	n = lanes3_scale(n, inverse);
+	n = lanes3_unit(n);
 	cosine = lanes3_dot(g, n);
 	contact &= cosine > GRAZING;
-	out->length = height / lanes_max(cosine, lanes_all(GRAZING));
+	out->length = divide(height, lanes_max(cosine, lanes_all(GRAZING)));
 	contact &= out->length < radius;
 	if (!mask_bits(contact))
 		return false;
@@ -136,7 +133,7 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	out->normal.x = lanes_keep(contact, n.x);
 	out->normal.y = lanes_keep(contact, n.y);
 	out->normal.z = lanes_keep(contact, n.z);
-	out->magnitude = lanes_keep(contact, block->stiffness[step] * (radius - out->length));
+	out->magnitude = lanes_keep(contact, mul(block->stiffness[step], radius - out->length));
 	out->height = height;
 	return true;
 }

@@ -31,10 +31,10 @@
 #include "combine.h"
 
 /* V's face is looked for again within this distance if the set has lost its number, mm. */
-#define PROXY_REFIND_MM ((real)1e-3)
+#define PROXY_REFIND_MM REAL(1e-3)
 
 /* How far after an outward crossing an inward one must come to be another one, mm. */
-#define CROSSING_APART ((real)1e-5)
+#define CROSSING_APART REAL(1e-5)
 
 static inline void penetration_enter(struct phantom_float_job *job, const struct segment *segment,
 				     struct crossing at)
@@ -63,7 +63,7 @@ static inline bool penetration_covered(const struct phantom_float_job *job, u32 
 	nm_offset(job->tip_nm, real3_scale(g, depth + 2 * rounding_mm(job->set)), top);
 	if (!segment_set(&over, job->tip_nm, top))
 		return false;
-	return crossing_find(job->set, &over, CROSSING_OUTWARD, false, -1).patch !=
+	return crossing_find(job->set, &over, CROSSING_OUTWARD, false, REAL(-1)).patch !=
 	       PHANTOM_PATCH_NONE;
 }
 
@@ -75,7 +75,7 @@ static inline bool penetration_from_outside(struct phantom_float_job *job)
 
 	if (!job->path_valid || !segment_set(&path, job->previous_nm, job->tip_nm))
 		return false;
-	in = crossing_find(job->set, &path, CROSSING_INWARD, false, -1);
+	in = crossing_find(job->set, &path, CROSSING_INWARD, false, REAL(-1));
 	if (in.patch == PHANTOM_PATCH_NONE)
 		return false;
 	out = crossing_find(job->set, &path, CROSSING_OUTWARD, false, in.along);
@@ -93,12 +93,12 @@ static inline bool penetration_from_inside(struct phantom_float_job *job)
 
 	if (!job->path_valid || !segment_set(&path, job->previous_nm, job->tip_nm))
 		return false;
-	out = crossing_find(job->set, &path, CROSSING_OUTWARD, false, -1);
+	out = crossing_find(job->set, &path, CROSSING_OUTWARD, false, REAL(-1));
 	if (out.patch == PHANTOM_PATCH_NONE)
 		return false;
 	penetration_leave(job);
 	in = crossing_find(job->set, &path, CROSSING_INWARD, false,
-			   out.along + CROSSING_APART / path.length);
+			   out.along + divide(CROSSING_APART, path.length));
 	if (in.patch != PHANTOM_PATCH_NONE)
 		penetration_enter(job, &path, in);
 	return true;
@@ -173,18 +173,18 @@ static inline void penetration_prolong(const struct phantom_float_job *job, stru
 {
 	real rounding = rounding_mm(job->set), length, rise;
 	struct real3 way = {
-		(real)((s64)target[0] - job->tip_nm[0]) * MM_PER_NM,
-		(real)((s64)target[1] - job->tip_nm[1]) * MM_PER_NM,
-		(real)((s64)target[2] - job->tip_nm[2]) * MM_PER_NM,
+		real_from_nm((s64)target[0] - job->tip_nm[0]),
+		real_from_nm((s64)target[1] - job->tip_nm[1]),
+		real_from_nm((s64)target[2] - job->tip_nm[2]),
 	};
 
 	length = real3_length(way);
 	rise = real3_dot(way, g);
 	/* a way without direction, or one that hardly rises: along the normal instead */
-	if (length < 16 * rounding || rise < (real)0.01 * length)
+	if (length < 16 * rounding || rise < mul(REAL(0.01), length))
 		nm_offset(target, real3_scale(g, 2 * rounding), target);
 	else
-		nm_offset(target, real3_scale(way, 2 * rounding / rise), target);
+		nm_offset(target, real3_scale(way, divide(2 * rounding, rise)), target);
 }
 
 /* V follows the tip. Returns the patch V lies on, NONE if it is not in the set. */
@@ -210,7 +210,7 @@ static inline u32 penetration_follow(struct phantom_float_job *job)
 	penetration_prolong(job, g, target);
 	if (!segment_set(&over, job->tip_nm, target))
 		return patch;
-	at = crossing_find(job->set, &over, CROSSING_OUTWARD, true, -1);
+	at = crossing_find(job->set, &over, CROSSING_OUTWARD, true, REAL(-1));
 	if (at.patch != PHANTOM_PATCH_NONE) {
 		penetration_enter(job, &over, at);
 		return at.patch;
@@ -228,14 +228,14 @@ static inline struct real3 surface_normal_barycentric(const struct block *block,
 {
 	struct real3 q = from_corner_lane(block, lane, 0, point_nm);
 	struct real3 e1 = row3_lane(&block->edge[0].along, lane);
-	struct real3 e2 = real3_scale(row3_lane(&block->edge[2].along, lane), -1);
+	struct real3 e2 = real3_scale(row3_lane(&block->edge[2].along, lane), REAL(-1));
 	struct real3 g = row3_lane(&block->face_normal, lane);
 	struct real3 n;
 	real b0, b1, b2, area = real3_dot(real3_cross(e1, e2), g);
 
-	b1 = real_clamp(real3_dot(real3_cross(q, e2), g) / area, 0, 1);
-	b2 = real_clamp(real3_dot(real3_cross(e1, q), g) / area, 0, 1 - b1);
-	b0 = 1 - b1 - b2;
+	b1 = real_clamp(divide(real3_dot(real3_cross(q, e2), g), area), 0, REAL(1));
+	b2 = real_clamp(divide(real3_dot(real3_cross(e1, q), g), area), 0, REAL(1) - b1);
+	b0 = REAL(1) - b1 - b2;
 	n = real3_scale(row3_lane(&block->edge[0].normal, lane), b0);
 	n = real3_add(n, real3_scale(row3_lane(&block->edge[1].normal, lane), b1));
 	return real3_add(n, real3_scale(row3_lane(&block->edge[2].normal, lane), b2));
@@ -268,7 +268,7 @@ static inline struct real3 penetration_normal(const struct phantom_float_job *jo
 
 	if (!(length > 0))
 		return row3_lane(&block->face_normal, lane);
-	return real3_scale(normal, 1 / length);
+	return real3_over(normal, length);
 }
 
 /* F = k (R n(V) + (V - P1)) */

@@ -75,8 +75,9 @@ struct phantom_float_job {
 };
 
 struct phantom_float_ops {
-	const char *name; /* "sse2", "avx2", "double" */
+	const char *name; /* "sse2", "avx2", "avx512", "double", "fixed" */
 	u32 isa; /* PHANTOM_ISA_... */
+	bool integer; /* touches no float register: called outside sections too */
 	/* Bytes of a set of that many patches (round up to PHANTOM_FLOAT_SET_ALIGN inside). */
 	size_t (*set_bytes)(u32 patch_count);
 	void (*prepare)(struct phantom_float_prepare *prepare);
@@ -91,6 +92,8 @@ extern const struct phantom_float_ops phantom_float_sse2;
 extern const struct phantom_float_ops phantom_float_avx2;
 /* User mode only: no virtual machine that the module is tested in has AVX-512. */
 extern const struct phantom_float_ops phantom_float_avx512;
+/* No float at all: no section is needed round its calls. */
+extern const struct phantom_float_ops phantom_float_fixed;
 /* User mode only: the same source in float64. */
 extern const struct phantom_float_ops phantom_float_double;
 

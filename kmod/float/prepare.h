@@ -1,66 +1,83 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
  * prepare.h - from validated patches (integers) to blocks: everything that can be computed once
- * per set. Scalar float64 with exact integer cross products, so that a sliver's plane is as good
- * as its nm coordinates allow, and the same bits in every unit.
+ * per set. Scalar float64 (`wide`: in software where there is no float) with exact integer cross
+ * products, so that a sliver's plane is as good as its nm coordinates allow, and the same bits in
+ * every unit.
  */
 #ifndef PHANTOM_FLOAT_PREPARE_H
 #define PHANTOM_FLOAT_PREPARE_H
 
 #include "block.h"
 
-struct double3 {
-	double x, y, z;
+struct wide3 {
+	wide x, y, z;
 };
 
 /*
  * A triangle lower than this has no plane to speak of: the nm grid of the border alone turns its
  * normal by 5 degrees.
  */
-#define SLIVER_HEIGHT_NM 16.0
+#define SLIVER_HEIGHT_NM 16
 
 /*
  * A fan with less between its normals is too narrow to have a shell: over an edge, radians; over a
  * vertex, their square. What is left open at R is below a nm.
  */
-#define FAN_EDGE_MIN 1e-8
-#define FAN_CORNER_MIN 1e-14
+#define FAN_EDGE_MIN WIDE(1e-8)
+#define FAN_CORNER_MIN WIDE(1e-14)
 
 /* Least |N| that is reckoned with: h <= R / |N| (normals of a patch more than 160 degrees apart). */
-#define NORMAL_LENGTH_MIN 0.15
+#define NORMAL_LENGTH_MIN WIDE(0.15)
 
-LANES_INLINE struct double3 double3_sub(struct double3 a, struct double3 b)
+LANES_INLINE struct wide3 wide3_sub(struct wide3 a, struct wide3 b)
 {
-	return (struct double3){a.x - b.x, a.y - b.y, a.z - b.z};
+	return (struct wide3){wide_sub(a.x, b.x), wide_sub(a.y, b.y), wide_sub(a.z, b.z)};
 }
 
-LANES_INLINE struct double3 double3_add(struct double3 a, struct double3 b)
+LANES_INLINE struct wide3 wide3_add(struct wide3 a, struct wide3 b)
 {
-	return (struct double3){a.x + b.x, a.y + b.y, a.z + b.z};
+	return (struct wide3){wide_add(a.x, b.x), wide_add(a.y, b.y), wide_add(a.z, b.z)};
 }
 
-LANES_INLINE struct double3 double3_scale(struct double3 a, double s)
+LANES_INLINE struct wide3 wide3_scale(struct wide3 a, wide s)
 {
-	return (struct double3){a.x * s, a.y * s, a.z * s};
+	return (struct wide3){wide_mul(a.x, s), wide_mul(a.y, s), wide_mul(a.z, s)};
 }
 
-LANES_INLINE double double3_dot(struct double3 a, struct double3 b)
+static inline wide wide3_dot(struct wide3 a, struct wide3 b)
 {
-	return a.x * b.x + a.y * b.y + a.z * b.z;
+	return wide_add(wide_add(wide_mul(a.x, b.x), wide_mul(a.y, b.y)), wide_mul(a.z, b.z));
 }
 
-LANES_INLINE struct double3 double3_cross(struct double3 a, struct double3 b)
+static inline struct wide3 wide3_cross(struct wide3 a, struct wide3 b)
 {
-	return (struct double3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-				a.x * b.y - a.y * b.x};
+	return (struct wide3){wide_sub(wide_mul(a.y, b.z), wide_mul(a.z, b.y)),
+			      wide_sub(wide_mul(a.z, b.x), wide_mul(a.x, b.z)),
+			      wide_sub(wide_mul(a.x, b.y), wide_mul(a.y, b.x))};
 }
 
-static inline void row_set(lanes *row, u32 lane, double value)
+static inline wide wide3_length(struct wide3 a)
 {
-	row[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = (real)value;
+	return wide_sqrt(wide3_dot(a, a));
 }
 
-static inline void row3_set(struct row3 *row, u32 lane, struct double3 value)
+LANES_INLINE struct wide3 wide3_from_integers(s64 x, s64 y, s64 z)
+{
+	return (struct wide3){wide_from_integer(x), wide_from_integer(y), wide_from_integer(z)};
+}
+
+LANES_INLINE wide wide_inverse(wide a)
+{
+	return wide_div(WIDE(1), a);
+}
+
+static inline void row_set(lanes *row, u32 lane, wide value)
+{
+	row[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = real_from_wide(value);
+}
+
+static inline void row3_set(struct row3 *row, u32 lane, struct wide3 value)
 {
 	row_set(row->x, lane, value.x);
 	row_set(row->y, lane, value.y);
@@ -69,29 +86,29 @@ static inline void row3_set(struct row3 *row, u32 lane, struct double3 value)
 
 /* A patch in float64, mm. */
 struct patch_geometry {
-	struct double3 normal[3]; /* m */
-	struct double3 edge[3]; /* e_i = x_(i+1) - x_i */
-	double length2[3]; /* |e_i|^2 */
+	struct wide3 normal[3]; /* m */
+	struct wide3 edge[3]; /* e_i = x_(i+1) - x_i */
+	wide length2[3]; /* |e_i|^2 */
 	/*
 	 * A(h) of projected.h from its first term that does not vanish on: h^order lead size, then
 	 * the terms after it, divided by size. A face has order 0, lead = g and size = |A0|, twice
 	 * its area in mm^2.
 	 */
 	u32 order;
-	double size;
-	struct double3 lead, area1, area2;
+	wide size;
+	struct wide3 lead, area1, area2;
+	wide radius; /* R, mm */
 };
 
-static inline struct double3 edge_nm(const struct phantom_patch *patch, u32 from, u32 to)
+static inline struct wide3 edge_nm(const struct phantom_patch *patch, u32 from, u32 to)
 {
 	const s32 *a = patch->vertex_nm[from], *b = patch->vertex_nm[to];
 
-	return (struct double3){(double)((s64)b[0] - a[0]), (double)((s64)b[1] - a[1]),
-				(double)((s64)b[2] - a[2])};
+	return wide3_from_integers((s64)b[0] - a[0], (s64)b[1] - a[1], (s64)b[2] - a[2]);
 }
 
 /* (x1 - x0) x (x2 - x0) in nm^2. Exact in integers: differences are below 2^31 for +-1 m. */
-static inline struct double3 cross_nm2(const struct phantom_patch *patch)
+static inline struct wide3 cross_nm2(const struct phantom_patch *patch)
 {
 	const s32 *x0 = patch->vertex_nm[0], *x1 = patch->vertex_nm[1], *x2 = patch->vertex_nm[2];
 	s64 a[3], b[3];
@@ -101,90 +118,95 @@ static inline struct double3 cross_nm2(const struct phantom_patch *patch)
 		a[axis] = (s64)x1[axis] - x0[axis];
 		b[axis] = (s64)x2[axis] - x0[axis];
 	}
-	return (struct double3){(double)(a[1] * b[2] - a[2] * b[1]),
-				(double)(a[2] * b[0] - a[0] * b[2]),
-				(double)(a[0] * b[1] - a[1] * b[0])};
+	return wide3_from_integers(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+				   a[0] * b[1] - a[1] * b[0]);
 }
 
 /* Normals and edges; returns the square of the longest edge, nm^2. */
-static inline double patch_corners(const struct phantom_patch *patch, struct patch_geometry *out)
+static inline wide patch_corners(const struct phantom_patch *patch, struct patch_geometry *out)
 {
-	double longest2_nm2 = 0;
+	wide longest2_nm2 = WIDE(0);
 	u32 i;
 
 	for (i = 0; i < 3; i++) {
 		const s32 *m = patch->normal_q30[i];
-		struct double3 edge = edge_nm(patch, i, (i + 1) % 3);
-		double length2 = double3_dot(edge, edge);
+		struct wide3 edge = edge_nm(patch, i, (i + 1) % 3);
+		wide length2 = wide3_dot(edge, edge);
 
-		if (length2 > longest2_nm2)
+		if (wide_less(longest2_nm2, length2))
 			longest2_nm2 = length2;
-		out->edge[i] = double3_scale(edge, 1e-6);
-		out->length2[i] = length2 * 1e-12;
-		out->normal[i] = (struct double3){m[0] * (1.0 / PHANTOM_Q30_ONE),
-						  m[1] * (1.0 / PHANTOM_Q30_ONE),
-						  m[2] * (1.0 / PHANTOM_Q30_ONE)};
+		out->edge[i] = wide3_scale(edge, WIDE(1e-6));
+		out->length2[i] = wide_mul(length2, WIDE(1e-12));
+		out->normal[i] = wide3_scale(wide3_from_integers(m[0], m[1], m[2]),
+					     WIDE(1.0 / PHANTOM_Q30_ONE));
 	}
 	return longest2_nm2;
 }
 
 /* A1 and A2 of A(h). */
-static inline void patch_turns(const struct patch_geometry *p, struct double3 *area1,
-			       struct double3 *area2)
+static inline void patch_turns(const struct patch_geometry *p, struct wide3 *area1,
+			       struct wide3 *area2)
 {
-	struct double3 e1 = p->edge[0], e2 = double3_scale(p->edge[2], -1);
-	struct double3 f1 = double3_sub(p->normal[1], p->normal[0]);
-	struct double3 f2 = double3_sub(p->normal[2], p->normal[0]);
+	struct wide3 e1 = p->edge[0], e2 = wide3_scale(p->edge[2], WIDE(-1));
+	struct wide3 f1 = wide3_sub(p->normal[1], p->normal[0]);
+	struct wide3 f2 = wide3_sub(p->normal[2], p->normal[0]);
 
-	*area1 = double3_add(double3_cross(e1, f2), double3_cross(f1, e2));
-	*area2 = double3_cross(f1, f2);
+	*area1 = wide3_add(wide3_cross(e1, f2), wide3_cross(f1, e2));
+	*area2 = wide3_cross(f1, f2);
 }
 
 /* False where the face has no trustworthy plane. */
 static inline bool face_measure(const struct phantom_patch *patch, struct patch_geometry *out)
 {
-	struct double3 cross = cross_nm2(patch), area1, area2;
-	double size_nm2 = double_sqrt(double3_dot(cross, cross));
-	double longest2_nm2 = patch_corners(patch, out);
+	struct wide3 cross = cross_nm2(patch), area1, area2;
+	wide size_nm2 = wide3_length(cross);
+	wide longest2_nm2 = patch_corners(patch, out);
 
 	/* height over the longest edge = size / that edge */
-	if (size_nm2 * size_nm2 < SLIVER_HEIGHT_NM * SLIVER_HEIGHT_NM * longest2_nm2 ||
-	    !(size_nm2 > 0))
+	if (wide_less(wide_mul(size_nm2, size_nm2),
+		      wide_mul(WIDE(SLIVER_HEIGHT_NM * SLIVER_HEIGHT_NM), longest2_nm2)) ||
+	    !wide_less(WIDE(0), size_nm2))
 		return false;
 	patch_turns(out, &area1, &area2);
 	out->order = 0;
-	out->size = size_nm2 * 1e-12;
-	out->lead = double3_scale(cross, 1 / size_nm2);
-	out->area1 = double3_scale(area1, 1 / out->size);
-	out->area2 = double3_scale(area2, 1 / out->size);
+	out->size = wide_mul(size_nm2, WIDE(1e-12));
+	out->lead = wide3_scale(cross, wide_inverse(size_nm2));
+	out->area1 = wide3_scale(area1, wide_inverse(out->size));
+	out->area2 = wide3_scale(area2, wide_inverse(out->size));
 	return true;
 }
 
 /* False where its normals are too near to one another for a shell. */
 static inline bool fan_measure(const struct phantom_patch *patch, struct patch_geometry *out)
 {
-	double longest_nm = double_sqrt(patch_corners(patch, out)), least;
-	struct double3 area1, area2;
+	wide longest_nm = wide_sqrt(patch_corners(patch, out)), least;
+	struct wide3 area1, area2;
 
 	patch_turns(out, &area1, &area2);
 	if (patch->kind == PHANTOM_PATCH_EDGE) {
 		out->order = 1;
 		out->lead = area1;
 		out->area1 = area2;
-		least = FAN_EDGE_MIN * longest_nm * 1e-6;
+		least = wide_mul(wide_mul(FAN_EDGE_MIN, longest_nm), WIDE(1e-6));
 	} else {
 		out->order = 2;
 		out->lead = area2;
-		out->area1 = (struct double3){0, 0, 0};
+		out->area1 = wide3_from_integers(0, 0, 0);
 		least = FAN_CORNER_MIN;
 	}
-	out->area2 = (struct double3){0, 0, 0};
-	out->size = double_sqrt(double3_dot(out->lead, out->lead));
-	if (!(out->size > least))
+	out->area2 = wide3_from_integers(0, 0, 0);
+	out->size = wide3_length(out->lead);
+	if (!wide_less(least, out->size))
 		return false;
-	out->lead = double3_scale(out->lead, 1 / out->size);
-	out->area1 = double3_scale(out->area1, 1 / out->size);
+	out->lead = wide3_scale(out->lead, wide_inverse(out->size));
+	out->area1 = wide3_scale(out->area1, wide_inverse(out->size));
 	return true;
+}
+
+/* False where a term of the cubic is too large for a real. */
+static inline bool patch_fits(const struct patch_geometry *p)
+{
+	return wide_fits(wide3_length(p->area1)) && wide_fits(wide3_length(p->area2));
 }
 
 static inline void prepare_edges(struct block *block, u32 lane, const struct patch_geometry *p)
@@ -193,51 +215,50 @@ static inline void prepare_edges(struct block *block, u32 lane, const struct pat
 
 	for (i = 0; i < 3; i++) {
 		struct paper_edge *edge = &block->edge[i];
-		struct double3 along = double3_sub(p->normal[(i + 1) % 3], p->normal[i]);
+		struct wide3 along = wide3_sub(p->normal[(i + 1) % 3], p->normal[i]);
 		/* an edge that is a point: only a fan has one, and no use for the rest */
-		double length2 = p->length2[i] > 0 ? p->length2[i] : 1;
-		double inverse_length = 1 / double_sqrt(length2);
+		wide length2 = wide_less(WIDE(0), p->length2[i]) ? p->length2[i] : WIDE(1);
+		wide inverse_length = wide_inverse(wide_sqrt(length2));
 
 		row3_set(&edge->along, lane, p->edge[i]);
-		row_set(edge->inverse_length2, lane, 1 / length2);
+		row_set(edge->inverse_length2, lane, wide_inverse(length2));
 		row3_set(&edge->normal, lane, p->normal[i]);
 		row3_set(&edge->normal_along, lane, along);
 		row3_set(&edge->wall, lane,
-			 double3_scale(double3_cross(p->normal[i], p->edge[i]), inverse_length));
+			 wide3_scale(wide3_cross(p->normal[i], p->edge[i]), inverse_length));
 		row3_set(&edge->wall_along, lane,
-			 double3_scale(double3_cross(along, p->edge[i]), inverse_length));
+			 wide3_scale(wide3_cross(along, p->edge[i]), inverse_length));
 	}
 }
 
 /* A lower bound of |N| over the patch: N . u >= min m_i . u, with u along m0 + m1 + m2. */
-static inline double normal_length_min(const struct patch_geometry *p)
+static inline wide normal_length_min(const struct patch_geometry *p)
 {
-	struct double3 sum = double3_add(double3_add(p->normal[0], p->normal[1]), p->normal[2]);
-	double length = double_sqrt(double3_dot(sum, sum));
-	double least = 1;
+	struct wide3 sum = wide3_add(wide3_add(p->normal[0], p->normal[1]), p->normal[2]);
+	wide length = wide3_length(sum);
+	wide least = WIDE(1);
 	u32 i;
 
 	for (i = 0; i < 3; i++) {
-		double along = double3_dot(p->normal[i], sum);
+		wide along = wide3_dot(p->normal[i], sum);
 
-		if (along < least * length)
-			least = length > 0 ? along / length : 0;
+		if (wide_less(along, wide_mul(least, length)))
+			least = wide_less(WIDE(0), length) ? wide_div(along, length) : WIDE(0);
 	}
-	return least > NORMAL_LENGTH_MIN ? least : NORMAL_LENGTH_MIN;
+	return wide_less(NORMAL_LENGTH_MIN, least) ? least : NORMAL_LENGTH_MIN;
 }
 
-static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p,
-				 double radius)
+static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p)
 {
 	row3_set(&block->face_normal, lane, p->lead);
 	row_set(block->area, lane, p->size);
-	row_set(block->order, lane, p->order);
+	row_set(block->order, lane, wide_from_integer(p->order));
 	row3_set(&block->area1, lane, p->area1);
 	row3_set(&block->area2, lane, p->area2);
-	row_set(block->normal_area0, lane, double3_dot(p->normal[0], p->lead));
-	row_set(block->normal_area1, lane, double3_dot(p->normal[0], p->area1));
-	row_set(block->normal_area2, lane, double3_dot(p->normal[0], p->area2));
-	row_set(block->height_limit, lane, radius / normal_length_min(p));
+	row_set(block->normal_area0, lane, wide3_dot(p->normal[0], p->lead));
+	row_set(block->normal_area1, lane, wide3_dot(p->normal[0], p->area1));
+	row_set(block->normal_area2, lane, wide3_dot(p->normal[0], p->area2));
+	row_set(block->height_limit, lane, wide_div(p->radius, normal_length_min(p)));
 }
 
 static inline void prepare_patch(struct phantom_float_set *set, struct block *block, u32 lane,
@@ -245,56 +266,55 @@ static inline void prepare_patch(struct phantom_float_set *set, struct block *bl
 {
 	const struct float_material *material = &set->materials[patch->material];
 	/* x1 - x0 and x2 - x0 as seen from the centroid */
-	struct double3 e1 = p->edge[0], e2 = double3_scale(p->edge[2], -1);
-	struct double3 centre = double3_scale(double3_add(e1, e2), 1.0 / 3);
-	struct double3 away[3] = {centre, double3_sub(e1, centre), double3_sub(e2, centre)};
-	double extent2 = 0, extent;
+	struct wide3 e1 = p->edge[0], e2 = wide3_scale(p->edge[2], WIDE(-1));
+	struct wide3 centre = wide3_scale(wide3_add(e1, e2), WIDE(1.0 / 3));
+	struct wide3 away[3] = {centre, wide3_sub(e1, centre), wide3_sub(e2, centre)};
+	wide extent2 = WIDE(0), extent;
 	u32 i, axis;
 
 	for (i = 0; i < 3; i++) {
-		double away2 = double3_dot(away[i], away[i]);
+		wide away2 = wide3_dot(away[i], away[i]);
 
-		if (away2 > extent2)
+		if (wide_less(extent2, away2))
 			extent2 = away2;
 		for (axis = 0; axis < 3; axis++)
 			block->corner[i][axis][lane / PHANTOM_LANES][lane % PHANTOM_LANES] =
 				(coordinate)patch->vertex_nm[i][axis];
 	}
 	/* a little larger, so that rounding in the tick never rules out a patch in reach */
-	extent = double_sqrt(extent2) * (1 + 1e-5) + 1e-5;
-	if (extent > set->extent)
-		set->extent = (real)extent;
-	row_set(block->radius, lane, material->radius);
+	extent = wide_add(wide_mul(wide_sqrt(extent2), WIDE(1 + 1e-5)), WIDE(1e-5));
+	set->extent = real_max(set->extent, real_from_wide(extent));
+	block->radius[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->radius;
 	row3_set(&block->centre, lane, centre);
 	row_set(block->extent, lane, extent);
-	row_set(block->stiffness, lane, material->stiffness);
+	block->stiffness[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->stiffness;
 	prepare_edges(block, lane, p);
-	prepare_shell(block, lane, p, material->radius);
+	prepare_shell(block, lane, p);
 }
 
 /* A lane that can never be in contact. */
 static inline void prepare_idle(struct block *block, u32 lane)
 {
-	const struct double3 zero = {0, 0, 0};
-	struct patch_geometry p = {.size = 1};
+	const struct wide3 zero = wide3_from_integers(0, 0, 0);
+	struct patch_geometry p = {.size = WIDE(1), .radius = WIDE(-1)};
 	u32 i, axis;
 
 	for (i = 0; i < 3; i++) {
 		p.edge[i] = zero;
 		p.normal[i] = zero;
-		p.length2[i] = 1;
+		p.length2[i] = WIDE(1);
 		for (axis = 0; axis < 3; axis++)
 			block->corner[i][axis][lane / PHANTOM_LANES][lane % PHANTOM_LANES] = 0;
 	}
 	p.lead = zero;
 	p.area1 = zero;
 	p.area2 = zero;
-	row_set(block->radius, lane, -1);
+	row_set(block->radius, lane, WIDE(-1));
 	row3_set(&block->centre, lane, zero);
-	row_set(block->extent, lane, -1e6);
-	row_set(block->stiffness, lane, 0);
+	row_set(block->extent, lane, WIDE(-1e6));
+	row_set(block->stiffness, lane, WIDE(0));
 	prepare_edges(block, lane, &p);
-	prepare_shell(block, lane, &p, -1);
+	prepare_shell(block, lane, &p);
 }
 
 static inline u32 blocks_for(u32 patch_count)
@@ -308,6 +328,11 @@ static inline u32 lane_of_patch(const struct phantom_float_prepare *prepare, u32
 	u32 faces = prepare->face_count;
 
 	return index < faces ? index : index - faces + blocks_for(faces) * PHANTOM_BLOCK;
+}
+
+static inline real real_scaled(u32 value, wide unit)
+{
+	return real_from_wide(wide_mul(wide_from_integer(value), unit));
 }
 
 static inline void prepare_header(const struct phantom_float_prepare *prepare)
@@ -328,10 +353,10 @@ static inline void prepare_header(const struct phantom_float_prepare *prepare)
 		struct float_material *material = &set->materials[i];
 		bool damped = in->effects & PHANTOM_EFFECT_DAMPING;
 
-		material->stiffness = (real)(in->stiffness_mn_mm * 1e-3);
-		material->radius = (real)(in->radius_nm * 1e-6);
+		material->stiffness = real_scaled(in->stiffness_mn_mm, WIDE(1e-3));
+		material->radius = real_scaled(in->radius_nm, WIDE(1e-6));
 		/* mN s/m = 1e-6 N per mm/s */
-		material->damping = damped ? (real)(in->damping_mns_m * 1e-6) : 0;
+		material->damping = damped ? real_scaled(in->damping_mns_m, WIDE(1e-6)) : 0;
 		set->radius = real_max(set->radius, material->radius);
 	}
 }
@@ -373,12 +398,15 @@ static inline void prepare_one(struct phantom_float_prepare *prepare, u32 index)
 		turn_edge_fan(patch, &turned);
 		patch = &turned;
 	}
+	geometry.radius = wide_mul(wide_from_integer(prepare->materials[patch->material].radius_nm),
+				   WIDE(1e-6));
 	block->face[lane] = patch->face;
 	block->material[lane] = patch->material;
 	for (i = 0; i < 3; i++)
 		block->vertex[i][lane] = patch->vertex[i];
-	if (patch->kind == PHANTOM_PATCH_FACE ? face_measure(patch, &geometry)
-					      : fan_measure(patch, &geometry)) {
+	if ((patch->kind == PHANTOM_PATCH_FACE ? face_measure(patch, &geometry)
+					       : fan_measure(patch, &geometry)) &&
+	    patch_fits(&geometry)) {
 		prepare_patch(set, block, lane, patch, &geometry);
 	} else {
 		prepare_idle(block, lane);

@@ -48,29 +48,29 @@
 #include "paper.h"
 #include "combine.h"
 
-#define MONOTONE_RATIO ((real)4)
+#define MONOTONE_RATIO 4
 
 /* Half the width of a soft wall, in units of rounding_mm(). */
-#define SOFT_WALL ((real)8)
+#define SOFT_WALL 8
 
 /*
  * The distance from a wall counts for at least that part of the distance within the offset triangle:
  * at a fold A.N = 0, and without it a root would lie on every wall there, however far from it in b.
  */
-#define IN_PLANE ((real)1 / 32)
+#define IN_PLANE REAL(1.0 / 32)
 
 /*
  * A(h) = 0 solves the cubic as well, with b that mean nothing. It happens only where the interval is
  * split; there P must be found again from its b and h, up to that part of R.
  */
-#define FOUND_AGAIN ((real)1e-3)
+#define FOUND_AGAIN REAL(1e-3)
 
 /*
  * Two patches that meet where the tip is find the same root there: in height but for that many
  * rounding_mm(), in normal but for that many radians.
  */
-#define SAME_SHEET_HEIGHT ((real)512)
-#define SAME_SHEET_TURN ((real)0.01)
+#define SAME_SHEET_HEIGHT 512
+#define SAME_SHEET_TURN REAL(0.01)
 
 /* Bisection alone needs that many steps for float32's 24 bits; float64 ends as near as Newton gets. */
 #define BRACKET_STEPS 32
@@ -102,17 +102,17 @@ struct shell_point {
 
 LANES_INLINE lanes cubic_at(const struct cubic *c, lanes h)
 {
-	return ((c->c3 * h + c->c2) * h + c->c1) * h + c->c0;
+	return mul(mul(mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
 }
 
 LANES_INLINE lanes cubic_slope(const struct cubic *c, lanes h)
 {
-	return (3 * c->c3 * h + 2 * c->c2) * h + c->c1;
+	return mul(mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
 }
 
 static inline real real_cubic_at(const struct real_cubic *c, real h)
 {
-	return ((c->c3 * h + c->c2) * h + c->c1) * h + c->c0;
+	return mul(mul(mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
 }
 
 /* The root in [low, high]; the cubic is negative at one end only and monotone between. */
@@ -123,14 +123,14 @@ static inline real bracket_solve(const struct real_cubic *c, real low, real high
 
 	for (i = 0; i < BRACKET_STEPS; i++) {
 		real value = real_cubic_at(c, h);
-		real slope = (3 * c->c3 * h + 2 * c->c2) * h + c->c1;
+		real slope = mul(mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
 		real next;
 
 		if ((value < 0) == falling)
 			high = h;
 		else
 			low = h;
-		next = h - value / slope;
+		next = h - divide(value, slope);
 		/* written so that a step which is no number is refused as well */
 		if (!(next > low && next < high))
 			next = (low + high) / 2;
@@ -144,7 +144,7 @@ static inline real bracket_solve(const struct real_cubic *c, real low, real high
 /* Critical points of the cubic inside (low, high), ascending; returns how many. */
 static inline u32 critical_points(const struct real_cubic *c, real low, real high, real out[2])
 {
-	real discriminant = c->c2 * c->c2 - 3 * c->c1 * c->c3;
+	real discriminant = mul_sub(c->c2, c->c2, 3 * c->c1, c->c3);
 	real both, first, second;
 	u32 count = 0;
 
@@ -152,8 +152,8 @@ static inline u32 critical_points(const struct real_cubic *c, real low, real hig
 		return 0;
 	/* the stable form: no difference of nearly equal numbers */
 	both = c->c2 < 0 ? -c->c2 + real_sqrt(discriminant) : -c->c2 - real_sqrt(discriminant);
-	first = both / (3 * c->c3);
-	second = c->c1 / both;
+	first = divide(both, 3 * c->c3);
+	second = divide(c->c1, both);
 	if (second < first) {
 		real swap = first;
 
@@ -184,7 +184,7 @@ LANES_NOINLINE void split_roots(const struct real_cubic *c, real low, real high,
 		if (negative == (real_cubic_at(c, ends[i + 1]) < 0))
 			continue;
 		roots->h[found][lane] = bracket_solve(c, ends[i], ends[i + 1], !negative);
-		roots->sign[found][lane] = negative ? -1 : 1;
+		roots->sign[found][lane] = negative ? REAL(-1) : REAL(1);
 		roots->valid[found][lane] = -1;
 		found++;
 	}
@@ -211,7 +211,7 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 	const lanes low = lanes_all(-rounding), zero = lanes_all(0);
 	lanes high = block->height_limit[step];
 	/* Bernstein coefficients of c' on [0, H] */
-	lanes first = c->c1, middle = c->c1 + c->c2 * high, last = cubic_slope(c, high);
+	lanes first = c->c1, middle = c->c1 + mul(c->c2, high), last = cubic_slope(c, high);
 	lanes least = lanes_min(lanes_min(first, middle), last);
 	lanes most = lanes_max(lanes_max(first, middle), last);
 	mask_lanes falling = (most < zero) & (least >= MONOTONE_RATIO * most);
@@ -222,14 +222,16 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 
 	roots->split = candidates & ~usual;
 	split = mask_bits(roots->split);
-	h = lanes_min(lanes_max(-c->c0 / lanes_select(usual, c->c1, lanes_all(1)), low), high);
+	h = lanes_min(
+		lanes_max(divide(-c->c0, lanes_select(usual, c->c1, lanes_all(REAL(1)))), low),
+		high);
 	for (i = 0; i < newton_steps; i++) {
-		lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(1));
+		lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(REAL(1)));
 
-		h = lanes_min(lanes_max(h - cubic_at(c, h) / slope, low), high);
+		h = lanes_min(lanes_max(h - divide(cubic_at(c, h), slope), low), high);
 	}
 	roots->h[0] = h;
-	roots->sign[0] = lanes_select(falling, lanes_all(1), lanes_all(-1));
+	roots->sign[0] = lanes_select(falling, lanes_all(REAL(1)), lanes_all(REAL(-1)));
 	roots->valid[0] = usual & ((cubic_at(c, low) < zero) ^ (cubic_at(c, high) < zero));
 	if (!split)
 		return rounds;
@@ -254,11 +256,11 @@ LANES_INLINE lanes soft_wall(lanes area, struct lanes3 normal, struct lanes3 edg
 			     lanes *soft_walls)
 {
 	struct lanes3 across = lanes3_cross(normal, edge);
-	lanes distance = area / lanes_sqrt(lanes3_dot(across, across) + lanes_all(TINY));
-	lanes weight = (distance + soft) * ((real)0.5 / soft);
+	lanes distance = divide(area, lanes_max(lanes3_length(across), lanes_all(REAL_TINY)));
+	lanes weight = mul(distance + soft, lanes_all(divide(REAL(0.5), soft)));
 
-	weight = lanes_min(lanes_max(weight, lanes_all(0)), lanes_all(1));
-	*soft_walls += lanes_keep((weight > 0) & (weight < 1), lanes_all(1));
+	weight = lanes_min(lanes_max(weight, lanes_all(0)), lanes_all(REAL(1)));
+	*soft_walls += lanes_keep((weight > 0) & (weight < REAL(1)), lanes_all(1));
 	return weight;
 }
 
@@ -267,7 +269,7 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 				   mask_lanes valid, mask_lanes split, real rounding, bool fan,
 				   struct shell_point *out)
 {
-	const lanes one = lanes_all(1);
+	const lanes one = lanes_all(REAL(1));
 	const real soft = SOFT_WALL * rounding;
 	struct lanes3 m0 = row3_step(&block->edge[0].normal, step);
 	struct lanes3 f1 = row3_step(&block->edge[0].normal_along, step);
@@ -282,63 +284,70 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 			   lanes3_scale(lanes3_add(row3_step(&block->area1, step),
 						   lanes3_scale(row3_step(&block->area2, step), h)),
 					h));
-	lanes size = block->area[step] * lanes3_dot(area, area);
+	lanes size = mul(block->area[step], lanes3_dot(area, area));
 	lanes inverse, b0, b1, b2, turned, reach, length, radius = block->radius[step];
 	lanes power = one; /* h^order */
 	struct lanes3 n;
 	mask_lanes near_wall;
 
 	if (fan) {
-		power = lanes_select(block->order[step] > 1, h * h, h);
+		power = lanes_select(block->order[step] > REAL(1), mul(h, h), h);
 		valid &= h > 0;
-		size *= power;
+		size = mul(size, power);
 	}
 	valid &= size > 0;
-	inverse = one / lanes_select(valid, size, one);
-	b1 = lanes3_dot(lanes3_cross(e2, w), area) * inverse;
-	b2 = lanes3_dot(lanes3_cross(e1, w), area) * inverse;
+	inverse = divide(one, lanes_select(valid, size, one));
+	b1 = mul(lanes3_dot(lanes3_cross(e2, w), area), inverse);
+	b2 = mul(lanes3_dot(lanes3_cross(e1, w), area), inverse);
 	b0 = one - b1 - b2;
 	n = lanes3_sub(lanes3_add(m0, lanes3_scale(f1, b1)), lanes3_scale(f2, b2));
-	turned = lanes_abs(lanes3_dot(area, n)) * block->area[step] * power;
+	turned = mul(mul(lanes_abs(lanes3_dot(area, n)), block->area[step]), power);
 	/* |N x E_i| is at most the length of an offset edge */
-	reach = (2 * soft) * (block->extent[step] + h + soft);
-	valid &= (b0 * turned >= -reach) & (b1 * turned >= -reach) & (b2 * turned >= -reach);
+	reach = mul(lanes_all(2 * soft), block->extent[step] + h + soft);
+	valid &= (mul(b0, turned) >= -reach) & (mul(b1, turned) >= -reach) &
+		 (mul(b2, turned) >= -reach);
 	if (mask_bits(split)) {
 		struct lanes3 away =
 			lanes3_add(w, lanes3_sub(lanes3_scale(e2, b2), lanes3_scale(e1, b1)));
 
 		valid &= ~split |
-			 (lanes3_dot(away, away) <= FOUND_AGAIN * FOUND_AGAIN * radius * radius);
+			 (lanes3_dot(away, away) <=
+			  mul(mul(lanes_all(mul(FOUND_AGAIN, FOUND_AGAIN)), radius), radius));
 	}
-	length = lanes_sqrt(lanes3_dot(n, n));
-	valid &= (length > 0) & (h * length < radius) & (h * length > -rounding);
+	length = lanes3_length(n);
+	valid &= (length > 0) & (mul(h, length) < radius) & (mul(h, length) > -rounding);
 	out->accepted = valid;
 	if (!mask_bits(valid))
 		return;
-	out->height = h * length;
-	out->normal = lanes3_scale(n, one / lanes_select(valid, length, one));
-	out->magnitude = block->stiffness[step] * (radius - out->height);
+	out->height = mul(h, length);
+	out->normal = lanes3_over(n, lanes_select(valid, length, one));
+	out->magnitude = mul(block->stiffness[step], radius - out->height);
 	out->weight = one;
 	out->soft_walls = lanes_all(0);
-	near_wall =
-		valid & ((b0 * turned <= reach) | (b1 * turned <= reach) | (b2 * turned <= reach));
+	near_wall = valid & ((mul(b0, turned) <= reach) | (mul(b1, turned) <= reach) |
+			     (mul(b2, turned) <= reach));
 	if (!mask_bits(near_wall))
 		return;
-	turned = lanes_max(turned, lanes_sqrt(lanes3_dot(area, area)) * block->area[step] * power *
-					   IN_PLANE);
-	out->weight = soft_wall(b2 * turned, n, e1, soft, &out->soft_walls) *
-		      soft_wall(b1 * turned, n, e2, soft, &out->soft_walls) *
-		      soft_wall(b0 * turned, n, lanes3_add(e1, e2), soft, &out->soft_walls);
+	turned = lanes_max(turned, mul(mul(mul(lanes3_length(area), block->area[step]), power),
+				       lanes_all(IN_PLANE)));
+	out->weight =
+		mul(mul(soft_wall(mul(b2, turned), n, e1, soft, &out->soft_walls),
+			soft_wall(mul(b1, turned), n, e2, soft, &out->soft_walls)),
+		    soft_wall(mul(b0, turned), n, lanes3_add(e1, e2), soft, &out->soft_walls));
 	/* a lane's result must not depend on who shares its step */
 	out->weight = lanes_select(near_wall, out->weight, one);
 	out->soft_walls = lanes_keep(near_wall, out->soft_walls);
 	if (fan) {
 		struct lanes3 along = row3_step(&block->edge[0].along, step);
-		lanes beyond = (one - b0) * lanes_sqrt(lanes3_dot(along, along));
-		lanes end = lanes_min(lanes_max((beyond + soft) * ((real)0.5 / soft), lanes_all(0)),
-				      one);
+		lanes beyond = mul(one - b0, lanes3_length(along));
+		lanes end =
+			lanes_min(lanes_max(mul(beyond + soft, lanes_all(divide(REAL(0.5), soft))),
+					    lanes_all(0)),
+				  one);
 
-		out->weight *= lanes_select(near_wall & (block->order[step] < 2), end, one);
+		out->weight =
+			mul(out->weight,
+			    lanes_select(near_wall & (block->order[step] < REAL(2)), end, one));
 	}
 	out->accepted = valid & (out->weight > 0);
 }
@@ -405,7 +414,7 @@ static inline bool same_sheet(const struct phantom_float_set *set, const struct 
 
 	return (a->soft_walls || b->soft_walls) && a->sign == b->sign &&
 	       real_abs(a->height - b->height) <= height &&
-	       real3_dot(turn, turn) <= SAME_SHEET_TURN * SAME_SHEET_TURN &&
+	       real3_dot(turn, turn) <= mul(SAME_SHEET_TURN, SAME_SHEET_TURN) &&
 	       shares_vertex(set, a->patch, b->patch);
 }
 
@@ -427,9 +436,9 @@ static inline real sheet_weight(const struct phantom_float_set *set,
 	 * its weight. In between the divisor goes over without a step.
 	 */
 	whole = sum + roots[i].weight;
-	if (whole < 1)
-		whole += (1 - whole) * real_max(0, 1 - 16 * sum);
-	return roots[i].weight / whole;
+	if (whole < REAL(1))
+		whole += mul(REAL(1) - whole, real_max(0, REAL(1) - 16 * sum));
+	return divide(roots[i].weight, whole);
 }
 
 /* The roots over a block, patch by patch; returns how many. */

@@ -23,23 +23,12 @@ LANES_INLINE bool feature_is_face(struct feature feature)
 /* Four of a row of integers: they are compared at once in every unit. */
 #define RING_QUADS (PHANTOM_BLOCK / 4)
 
-typedef u32 index_quad __attribute__((vector_size(16), may_alias));
-typedef float index_sign __attribute__((vector_size(16)));
-
-LANES_INLINE index_quad ring_has(const struct block *block, u32 quad, u32 vertex)
+/* Bit i: patch i of the quad has the vertex. */
+LANES_INLINE u32 ring_has(const struct block *block, u32 quad, u32 vertex)
 {
-	index_quad all = (index_quad){} + vertex, has = {};
-	u32 i;
-
-	for (i = 0; i < 3; i++)
-		has |= (index_quad)(*(const index_quad *)&block->vertex[i][4 * quad] == all);
-	return has;
-}
-
-/* One bit for each lane of the quad, where they are in the block. */
-LANES_INLINE u32 ring_lanes(index_quad has, u32 quad)
-{
-	return (u32)__builtin_ia32_movmskps((index_sign)has) << 4 * quad;
+	return index_equals(&block->vertex[0][4 * quad], vertex) |
+	       index_equals(&block->vertex[1][4 * quad], vertex) |
+	       index_equals(&block->vertex[2][4 * quad], vertex);
 }
 
 /* Bit per lane of a block: the patch has one of those vertices. */
@@ -48,11 +37,11 @@ static inline u32 ring_touches(const struct block *block, const u32 vertex[3])
 	u32 quad, i, bits = 0;
 
 	for (quad = 0; quad < RING_QUADS; quad++) {
-		index_quad has = {};
+		u32 has = 0;
 
 		for (i = 0; i < 3; i++)
 			has |= ring_has(block, quad, vertex[i]);
-		bits |= ring_lanes(has, quad);
+		bits |= has << 4 * quad;
 	}
 	return bits;
 }
@@ -63,9 +52,9 @@ static inline u32 ring_bits(const struct block *block, struct feature feature)
 	u32 quad, bits = 0, out = 0;
 
 	for (quad = 0; quad < RING_QUADS; quad++)
-		bits |= ring_lanes(ring_has(block, quad, feature.vertex[0]) &
-					   ring_has(block, quad, feature.vertex[1]),
-				   quad);
+		bits |= (ring_has(block, quad, feature.vertex[0]) &
+			 ring_has(block, quad, feature.vertex[1]))
+			<< 4 * quad;
 	for (; bits; bits &= bits - 1) {
 		u32 lane = (u32)__builtin_ctz(bits);
 

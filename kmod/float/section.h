@@ -5,6 +5,12 @@
 #ifndef PHANTOM_FLOAT_SECTION_H
 #define PHANTOM_FLOAT_SECTION_H
 
+#ifdef PHANTOM_REAL_FIXED
+#define PHANTOM_SECTION_INTEGER true
+#else
+#define PHANTOM_SECTION_INTEGER false
+#endif
+
 #include "prepare.h"
 #include "shell.h"
 #include "crossing.h"
@@ -14,6 +20,8 @@
 
 /* What a tick's first piece may cost beside the shell: the path against every patch, twice. */
 #define SECTION_COST_PATH 800U /* of a block */
+
+#define UN_PER_N 1000000
 
 /* Settles whether the tip is inside, and the force there. True: outside, the shell is to follow. */
 static inline bool section_settle(struct phantom_float_job *job, struct contact_force *out)
@@ -60,33 +68,9 @@ static inline void section_sink(struct phantom_float_job *job, const struct cont
 				  .face[out->deepest_patch % PHANTOM_BLOCK];
 }
 
-/* False for an infinity or what is no number. */
-LANES_INLINE bool real_finite(real a)
-{
-	return a - a == 0;
-}
-
-/* value * scale, rounded to nearest, saturated and counted. */
-static inline s32 section_integer(real value, real scale, u32 *saturated)
-{
-	real scaled = value * scale;
-
-	if (scaled >= (real)2147483648.0) {
-		(*saturated)++;
-		return 0x7fffffff;
-	}
-	if (scaled <= (real)-2147483648.0) {
-		(*saturated)++;
-		return -0x7fffffff - 1;
-	}
-	return (s32)nm_saturate((s64)(scaled + (scaled < 0 ? (real)-0.5 : (real)0.5)));
-}
-
 /* Effects and the way back to integers. */
 static inline void section_finish(struct phantom_float_job *job, struct contact_force *contact)
 {
-	const real q30 = (real)PHANTOM_Q30_ONE;
-
 	if ((job->effects & PHANTOM_EFFECT_DAMPING) && contact->damping > 0)
 		contact->force = damping_apply(contact->force, contact->normal, contact->damping,
 					       job->velocity_nm_s);
@@ -96,12 +80,12 @@ static inline void section_finish(struct phantom_float_job *job, struct contact_
 		*contact = (struct contact_force){.deepest = 0};
 		job->invalid = 1;
 	}
-	job->force_un[0] = section_integer(contact->force.x, (real)1e6, &job->saturated);
-	job->force_un[1] = section_integer(contact->force.y, (real)1e6, &job->saturated);
-	job->force_un[2] = section_integer(contact->force.z, (real)1e6, &job->saturated);
-	job->normal_q30[0] = section_integer(contact->normal.x, q30, &job->saturated);
-	job->normal_q30[1] = section_integer(contact->normal.y, q30, &job->saturated);
-	job->normal_q30[2] = section_integer(contact->normal.z, q30, &job->saturated);
+	job->force_un[0] = real_to_integer(contact->force.x, UN_PER_N, &job->saturated);
+	job->force_un[1] = real_to_integer(contact->force.y, UN_PER_N, &job->saturated);
+	job->force_un[2] = real_to_integer(contact->force.z, UN_PER_N, &job->saturated);
+	job->normal_q30[0] = real_to_integer(contact->normal.x, PHANTOM_Q30_ONE, &job->saturated);
+	job->normal_q30[1] = real_to_integer(contact->normal.y, PHANTOM_Q30_ONE, &job->saturated);
+	job->normal_q30[2] = real_to_integer(contact->normal.z, PHANTOM_Q30_ONE, &job->saturated);
 	job->contacts = contact->contacts;
 	job->folded = contact->folded;
 }
@@ -137,6 +121,7 @@ extern const struct phantom_float_ops PHANTOM_SECTION_OPS;
 const struct phantom_float_ops PHANTOM_SECTION_OPS = {
 	.name = PHANTOM_SECTION_NAME,
 	.isa = PHANTOM_SECTION_ISA,
+	.integer = PHANTOM_SECTION_INTEGER,
 	.set_bytes = section_set_bytes,
 	.prepare = section_prepare,
 	.tick = section_tick,

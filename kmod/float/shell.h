@@ -100,7 +100,7 @@ static inline void shell_finish(struct shell_state *state, struct real3 force)
 
 	out->force = force;
 	if (state->forces > 0)
-		out->damping = state->damping / state->forces;
+		out->damping = divide(state->damping, state->forces);
 	contact_direction(out);
 	shell_next(state, SHELL_DONE);
 }
@@ -165,13 +165,13 @@ static inline u32 shell_projected_sum(const struct phantom_float_set *set,
 	for (; state->cursor < state->count && spent < SHELL_PIECE; state->cursor++) {
 		const struct projected_root *root = &scratch_projected(set)[state->cursor];
 		const struct float_material *material = shell_material(set, root->patch);
-		real magnitude = root->weight * root->magnitude;
+		real magnitude = mul(root->weight, root->magnitude);
 
-		state->sum =
-			real3_add(state->sum, real3_scale(root->normal, root->sign * magnitude));
-		state->most = real_max(state->most, material->stiffness * material->radius);
+		state->sum = real3_add(state->sum,
+				       real3_scale(root->normal, mul(root->sign, magnitude)));
+		state->most = real_max(state->most, mul(material->stiffness, material->radius));
 		state->forces += magnitude;
-		state->damping += magnitude * material->damping;
+		state->damping += mul(magnitude, material->damping);
 		if (root->sign < 0) {
 			out->folded++;
 		} else if (root->height < out->deepest) {
@@ -183,7 +183,7 @@ static inline u32 shell_projected_sum(const struct phantom_float_set *set,
 	if (state->cursor == state->count) {
 		length = real3_length(state->sum);
 		shell_finish(state, length > state->most
-					    ? real3_scale(state->sum, state->most / length)
+					    ? real3_scale(state->sum, divide(state->most, length))
 					    : state->sum);
 	}
 	return spent;
@@ -318,7 +318,7 @@ static inline void shell_paper_add(const struct phantom_float_set *set, const st
 			out->deepest_patch = patch;
 		}
 		state->forces += at->magnitude[l];
-		state->damping += at->magnitude[l] * shell_material(set, patch)->damping;
+		state->damping += mul(at->magnitude[l], shell_material(set, patch)->damping);
 	}
 }
 
@@ -340,7 +340,7 @@ static inline u32 shell_paper_sum(const struct phantom_float_job *job, struct sh
 		state->sum = real3_add(state->sum, real3_scale(root->normal, root->magnitude));
 		state->most = real_max(state->most, root->magnitude);
 		state->forces += root->magnitude;
-		state->damping += root->magnitude * shell_material(set, root->patch)->damping;
+		state->damping += mul(root->magnitude, shell_material(set, root->patch)->damping);
 	}
 	if (state->cursor == end) {
 		state->out.contacts += state->fans;

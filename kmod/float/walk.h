@@ -51,20 +51,20 @@
 #define WALK_HELD_MAX 3
 
 /* Planes whose normals are less than 1 mrad apart have no line in common to speak of. */
-#define WALK_PARALLEL ((real)1e-6) /* sin^2 */
+#define WALK_PARALLEL REAL(1e-6) /* sin^2 */
 
 /*
  * A lip is low if the faces on either side are less than 30 degrees apart, and it is no farther from
  * the tip than V by more than this: what faces 20 degrees apart have, at equal distance from it.
  */
-#define WALK_LIP_COSINE ((real)0.866)
-#define WALK_LIP ((real)1.0154) /* 1 / cos 10 degrees */
+#define WALK_LIP_COSINE REAL(0.866)
+#define WALK_LIP REAL(1.0154) /* 1 / cos 10 degrees */
 
 /*
  * Nearer by less than this part of the distance is rounding. It is small because at a lip V goes far
  * for little: 20 um for 4 nm on facets of 0.2 mm, 3 mm deep.
  */
-#define WALK_NEARER ((real)4e-7)
+#define WALK_NEARER REAL(4e-7)
 
 /* The lanes of one step. */
 #define WALK_STEP_BITS ((1u << PHANTOM_LANES) - 1)
@@ -124,11 +124,12 @@ static inline u32 walk_along(struct walk *walk, struct real3 way, u32 except)
 		beside.vertex[i] = block->vertex[i][lane];
 	nm_offset(job->tip_nm, way, target);
 	if (segment_set(&segment, walk->proxy_nm, target)) {
-		at = crossing_find_beside(job->set, &segment, CROSSING_INWARD, false, -1, &beside);
+		at = crossing_find_beside(job->set, &segment, CROSSING_INWARD, false, REAL(-1),
+					  &beside);
 		if (at.patch == PHANTOM_PATCH_NONE)
 			for (i = 0; i < 3; i++)
 				walk->proxy_nm[i] = target[i];
-		else if (at.along * segment.length > walk->still)
+		else if (mul(at.along, segment.length) > walk->still)
 			segment_point(&segment, at.along, walk->proxy_nm);
 	}
 	walk->way = at.patch == PHANTOM_PATCH_NONE ? way : nm_way(job->tip_nm, walk->proxy_nm);
@@ -153,8 +154,8 @@ static inline bool walk_crease(const struct walk *walk, u32 f, u32 c, struct rea
 	if (!(sine2 > WALK_PARALLEL))
 		return false;
 	hc += walk->lift;
-	*way = real3_add(real3_scale(gf, (hf - cosine * hc) / sine2),
-			 real3_scale(gc, (hc - cosine * hf) / sine2));
+	*way = real3_add(real3_scale(gf, divide(hf - mul(cosine, hc), sine2)),
+			 real3_scale(gc, divide(hc - mul(cosine, hf), sine2)));
 	return true;
 }
 
@@ -165,7 +166,7 @@ static inline bool walk_clip(const struct walk *walk, struct real3 *way, u32 *ed
 	u32 lane = walk->patch % PHANTOM_BLOCK, i;
 	struct real3 g = row3_lane(&block->face_normal, lane);
 	struct real3 go = real3_sub(*way, walk->way);
-	real part = 1;
+	real part = REAL(1);
 	bool clipped = false;
 
 	for (i = 0; i < 3; i++) {
@@ -174,9 +175,9 @@ static inline bool walk_clip(const struct walk *walk, struct real3 *way, u32 *ed
 		real begin = real_max(real3_dot(inward, q), 0);
 		real fall = -real3_dot(inward, go);
 
-		if (!(fall > 0) || !(begin < part * fall))
+		if (!(fall > 0) || !(begin < mul(part, fall)))
 			continue;
-		part = begin / fall;
+		part = divide(begin, fall);
 		*edge = i;
 		clipped = true;
 	}
@@ -220,7 +221,7 @@ static inline bool walk_held(struct walk *walk, u32 c, const s32 start_nm[3])
 		walk->at.vertex[1] = block->vertex[(edge + 1) % 3][lane];
 	}
 	moved = nm_way(start_nm, walk->proxy_nm);
-	if (clipped || real3_dot(moved, moved) > 4 * walk->still * walk->still)
+	if (clipped || real3_dot(moved, moved) > mul(4 * walk->still, walk->still))
 		return false;
 	for (tries = 0; tries < 3; tries++)
 		walk->proxy_nm[tries] = start_nm[tries];
@@ -232,7 +233,7 @@ static inline bool walk_held(struct walk *walk, u32 c, const s32 start_nm[3])
 static inline u32 walk_next(const struct walk *walk)
 {
 	const struct phantom_float_set *set = walk->job->set;
-	real farthest = walk->still * walk->still;
+	real farthest = mul(walk->still, walk->still);
 	u32 found = PHANTOM_PATCH_NONE, i, step, l;
 
 	if (feature_is_face(walk->at))
@@ -292,15 +293,15 @@ static inline bool walk_lip(const struct walk *walk, u32 patch, struct real3 *wa
 	if (count == 2 && first == 0 && shared[2])
 		first = 2;
 	q = from_corner_lane(from, lane, first, walk->job->tip_nm);
-	*way = real3_scale(q, -1);
+	*way = real3_scale(q, REAL(-1));
 	if (count == 1)
 		return true;
 	e = row3_lane(&from->edge[first].along, lane);
 	*way = real3_add(
 		*way,
-		real3_scale(e, real_clamp(real3_dot(e, q) *
-						  row_lane(from->edge[first].inverse_length2, lane),
-					  0, 1)));
+		real3_scale(e, real_clamp(mul(real3_dot(e, q),
+					      row_lane(from->edge[first].inverse_length2, lane)),
+					  0, REAL(1))));
 	return true;
 }
 
@@ -320,7 +321,7 @@ static inline bool walk_clear(const struct walk *walk, u32 patch, struct real3 b
 	nm_offset(job->tip_nm, begin, from);
 	nm_offset(job->tip_nm, end, to);
 	return !segment_set(&segment, from, to) ||
-	       crossing_find_beside(job->set, &segment, CROSSING_INWARD, false, -1, &beside)
+	       crossing_find_beside(job->set, &segment, CROSSING_INWARD, false, REAL(-1), &beside)
 			       .patch == PHANTOM_PATCH_NONE;
 }
 
@@ -333,12 +334,12 @@ static inline bool walk_over_lip(struct walk *walk)
 	const struct phantom_float_set *set = walk->job->set;
 	const struct block *own = &set->blocks[walk->patch / PHANTOM_BLOCK];
 	const struct lanes3 g = lanes3_all(walk_face_normal(walk, walk->patch));
-	real distance = real3_length(walk->way), lip_max = distance * WALK_LIP;
-	real nearest = real_max(distance - WALK_NEARER * (distance + set->extent), 0);
+	real distance = real3_length(walk->way), lip_max = mul(distance, WALK_LIP);
+	real nearest = real_max(distance - mul(WALK_NEARER, distance + set->extent), 0);
 	struct real3 lip, across = walk->way, end = walk->way;
 	u32 found = PHANTOM_PATCH_NONE, vertex[3], i, step, l;
 
-	nearest *= nearest;
+	nearest = mul(nearest, nearest);
 	for (i = 0; i < 3; i++)
 		vertex[i] = own->vertex[i][walk->patch % PHANTOM_BLOCK];
 	for (i = 0; i < set->block_count; i++) {
@@ -416,7 +417,7 @@ static inline void walk_down(struct walk *walk, struct phantom_float_job *job, u
 		walk->proxy_nm[i] = job->proxy_nm[i];
 	walk->way = nm_way(job->tip_nm, job->proxy_nm);
 	/* what float32 makes of positions that far from the tip, and the nm grid that V is put on */
-	walk->still = 2 * (rounding + (real)5e-7 * real3_length(walk->way));
+	walk->still = 2 * (rounding + mul(REAL(5e-7), real3_length(walk->way)));
 	walk->lift = walk->still;
 	walk->patch = patch;
 	walk->settled = false;

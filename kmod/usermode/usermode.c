@@ -113,7 +113,7 @@ const struct phantom_float_ops *const *phantom_um_sections(void)
 {
 	static const struct phantom_float_ops *const all[] = {
 		&phantom_float_avx512, &phantom_float_avx2, &phantom_float_sse2,
-		&phantom_float_double, NULL};
+		&phantom_float_double, &phantom_float_fixed, NULL};
 
 	if (phantom_platform_has_avx512())
 		return all;
@@ -127,6 +127,7 @@ static int um_choose_ops(u32 isa, const struct phantom_float_ops *ops[PHANTOM_AR
 	bool best = isa == PHANTOM_ISA_NONE || isa == PHANTOM_ISA_DOUBLE;
 
 	memset(ops, 0, PHANTOM_ARITHS * sizeof(ops[0]));
+	ops[PHANTOM_ARITH_FIXED] = &phantom_float_fixed;
 	if (isa == PHANTOM_ISA_DOUBLE)
 		ops[PHANTOM_ARITH_DOUBLE] = &phantom_float_double;
 	if (isa == PHANTOM_ISA_FIXED)

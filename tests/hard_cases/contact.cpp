@@ -116,7 +116,9 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
     job_.model.newton_steps = settings.newton_steps;
     job_.model.combine = settings.combine;
     job_.model.proxy = settings.proxy;
-    job_.model.arith = ops.isa == PHANTOM_ISA_DOUBLE ? PHANTOM_ARITH_DOUBLE : PHANTOM_ARITH_FLOAT;
+    job_.model.arith = ops.isa == PHANTOM_ISA_DOUBLE  ? PHANTOM_ARITH_DOUBLE
+                       : ops.isa == PHANTOM_ISA_FIXED ? PHANTOM_ARITH_FIXED
+                                                      : PHANTOM_ARITH_FLOAT;
     job_.effects = settings.effects;
     job_.radius_nm = 2000000000; // a whole mesh
     restart();

@@ -32,7 +32,7 @@ struct Touch {
     phantom_float_job job{}; ///< as the section left it
 };
 
-/// The sections that this CPU can run: avx512, avx2 (if it has them), sse2, double.
+/// The sections that this CPU can run: avx512, avx2 (if it has them), sse2, double, fixed.
 std::vector<const phantom_float_ops*> sections();
 /// Those of them that must give the bits that SSE2 gives.
 std::vector<const phantom_float_ops*> wide_sections();

@@ -68,6 +68,17 @@ Settings settings_of(std::uint32_t model, std::uint32_t combine = PHANTOM_COMBIN
     return settings;
 }
 
+/// What the direction may be off by, N for kR = radius: next to a wall of the shells as much as a soft
+/// wall is wide, seen from the surface.
+double tolerance_n(const Vec3& p, const Vec3& corner, double radius, double distance)
+{
+    constexpr double soft_wall_mm = 2e-4;
+    bool beside = false;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        beside = beside || std::abs(std::abs(p[axis]) - corner[axis]) < soft_wall_mm;
+    return 1e-4 + (beside ? radius * soft_wall_mm / distance : 0);
+}
+
 TEST(Fan, ABoxFeelsLikeItsExactDistance)
 {
     const double radius = 2;
@@ -87,7 +98,8 @@ TEST(Fan, ABoxFeelsLikeItsExactDistance)
                     continue;
                 over_edges += (away[0] != 0) + (away[1] != 0) + (away[2] != 0) > 1;
                 const Vec3 expected = scale(radius - distance, unit(away));
-                ASSERT_LE(length(subtract(contact.tick(p).force, expected)), 1e-4)
+                ASSERT_LE(length(subtract(contact.tick(p).force, expected)),
+                          tolerance_n(p, half, radius, distance))
                     << fmt::format("{} model {} at {}", ops->name, model, fmt::join(p, " "));
             }
             EXPECT_GT(over_edges, 500U);
@@ -141,7 +153,8 @@ TEST(Fan, ATwoSidedSheetFeelsLikeItsExactDistance)
                     continue;
                 round_the_rim += away[0] != 0 || away[1] != 0;
                 const Vec3 expected = scale(radius - distance, unit(away));
-                ASSERT_LE(length(subtract(contact.tick(p).force, expected)), 1e-4)
+                ASSERT_LE(length(subtract(contact.tick(p).force, expected)),
+                          tolerance_n(p, {5, 4, 0}, radius, distance))
                     << fmt::format("{} model {} at {}", ops->name, model, fmt::join(p, " "));
             }
             EXPECT_GT(round_the_rim, 300U);

@@ -148,7 +148,7 @@ std::vector<std::uint32_t> tick_sections()
 {
     std::vector<std::uint32_t> out;
     for (const phantom_float_ops* const* at = phantom_um_sections(); *at; ++at)
-        if ((*at)->isa != PHANTOM_ISA_DOUBLE)
+        if ((*at)->isa != PHANTOM_ISA_DOUBLE && (*at)->isa != PHANTOM_ISA_FIXED)
             out.push_back((*at)->isa);
     return out;
 }

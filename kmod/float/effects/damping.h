@@ -17,10 +17,10 @@
 static inline struct real3 damping_apply(struct real3 force, struct real3 normal, real damping,
 					 const s32 velocity_nm_s[3])
 {
-	struct real3 velocity = {velocity_nm_s[0] * MM_PER_NM, velocity_nm_s[1] * MM_PER_NM,
-				 velocity_nm_s[2] * MM_PER_NM};
+	struct real3 velocity = {real_from_nm(velocity_nm_s[0]), real_from_nm(velocity_nm_s[1]),
+				 real_from_nm(velocity_nm_s[2])};
 	real along = real3_dot(force, normal);
-	real damped = along - damping * real3_dot(velocity, normal);
+	real damped = along - mul(damping, real3_dot(velocity, normal));
 
 	if (along < 0)
 		return force;
