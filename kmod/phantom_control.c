@@ -137,8 +137,8 @@ static void phantom_control_begin(struct phantom_servo *servo, const struct phan
 	phantom_stats_begin(&servo->stats);
 	phantom_control_reset(servo);
 	servo->stale_ns = (u64)stale_ms * NSEC_PER_MSEC;
-	servo->crossfade_ns = start->crossfade_ms ? (u64)start->crossfade_ms * NSEC_PER_MSEC
-						  : PHANTOM_FADE_NS;
+	servo->crossfade_ns =
+		start->crossfade_ms ? (u64)start->crossfade_ms * NSEC_PER_MSEC : PHANTOM_FADE_NS;
 	WRITE_ONCE(servo->prepare_max_ns, 0);
 	phantom_control_set_state(servo, PHANTOM_STATE_RUNNING);
 }

@@ -240,8 +240,8 @@ static bool phantom_servo_lift(struct phantom_servo *servo, u64 lift_nm)
 	int axis;
 
 	for (axis = 0; axis < 3; axis++)
-		start_nm[axis] = base_nm[axis] + (s64)lift_nm * touch->normal_q30[axis] /
-							 PHANTOM_Q30_ONE;
+		start_nm[axis] =
+			base_nm[axis] + (s64)lift_nm * touch->normal_q30[axis] / PHANTOM_Q30_ONE;
 	return phantom_set_relative(servo->active, start_nm, job->previous_nm);
 }
 
