@@ -7,7 +7,7 @@ RELEASE := $(BUILD)/release
 JOBS    ?= $(shell nproc)
 CMAKE   := cmake -G Ninja -S userland
 
-.PHONY: help all demo test vm-test vm-debug modules install bench lint clean
+.PHONY: help all demo test fuzz vm-test vm-debug modules install bench lint clean
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -32,6 +32,10 @@ demo: ## touch the Stanford bunny: live status, picture, chart, trace
 test: ## every test that needs no VM and no root, also under ASan and UBSan
 	@tools/bootstrap test
 	@tools/test
+
+fuzz: ## arbitrary sets and paths through the border, with libFuzzer for SECONDS=600
+	@tools/bootstrap fuzz
+	@FUZZ_SECONDS=$(or $(SECONDS),600) tools/fuzz
 
 vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 	@tools/bootstrap vm

@@ -54,7 +54,7 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 	servo->device = device;
 	servo->features = PHANTOM_FEATURE_MODEL_PAPER | PHANTOM_FEATURE_MODEL_PROJECTED |
 			  PHANTOM_FEATURE_PROXY_PAPER | PHANTOM_FEATURE_PROXY_CONSTRAINED |
-			  PHANTOM_FEATURE_FANS;
+			  PHANTOM_FEATURE_FANS | PHANTOM_FEATURE_CROSSFADE;
 	for (arith = 0; arith < PHANTOM_ARITHS; arith++) {
 		servo->ops[arith] = ops[arith];
 		if (ops[arith])
@@ -94,7 +94,8 @@ static int phantom_control_check_start(const struct phantom_servo *servo,
 				       const struct phantom_start *start,
 				       struct phantom_limits *limits)
 {
-	if (start->reserved || (start->flags & ~PHANTOM_START_FLAGS_KNOWN))
+	if ((start->flags & ~PHANTOM_START_FLAGS_KNOWN) ||
+	    start->crossfade_ms > PHANTOM_RAMP_MAX_MS)
 		return -EINVAL;
 	if (!servo->device)
 		return -ENODEV;
@@ -136,6 +137,8 @@ static void phantom_control_begin(struct phantom_servo *servo, const struct phan
 	phantom_stats_begin(&servo->stats);
 	phantom_control_reset(servo);
 	servo->stale_ns = (u64)stale_ms * NSEC_PER_MSEC;
+	servo->crossfade_ns =
+		start->crossfade_ms ? (u64)start->crossfade_ms * NSEC_PER_MSEC : PHANTOM_FADE_NS;
 	WRITE_ONCE(servo->prepare_max_ns, 0);
 	phantom_control_set_state(servo, PHANTOM_STATE_RUNNING);
 }

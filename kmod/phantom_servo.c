@@ -9,7 +9,7 @@
  *     velocity <- low pass of tip             too fast is a fault
  *     covered  <- integers: does the set promise all that contact needs here?
  *     target   <- covered and fresh: float section (contact, proxy, effects); else 0
- *     target   <- blend, where covered, fresh, model or revision changed
+ *     target   <- blend, where covered, fresh, model or geometry changed
  *     force    <- safety: clamp, ramp, slew; any fault: 0
  *     device   <- force                       an error is a fault
  *     record, status page, wake-ups
@@ -34,6 +34,9 @@
 
 /* Readers of records are woken at most this often: at 10 kHz ten records cost one wake-up. */
 #define PHANTOM_WAKE_NS 1000000
+
+/* Where the geometry changes, surfaces that ought to be the same may lie this far apart. */
+#define PHANTOM_CARRY_NM 10000
 
 static u64 phantom_servo_now(const struct phantom_servo *servo)
 {
@@ -150,6 +153,23 @@ void phantom_servo_forget_touch(struct phantom_servo *servo)
 	servo->touch.proxy_face = PHANTOM_PATCH_NONE;
 }
 
+/* Another shape is no mere swap, nor is a scene that became empty here. */
+static void phantom_servo_compare(struct phantom_servo *servo, const struct phantom_slot *before,
+				  const struct phantom_slot *slot, struct phantom_pass *pass)
+{
+	struct phantom_touch *touch = &servo->touch;
+	/* along the normal it is somewhat farther than to the nearest point */
+	u64 apart = 2 * ((u64)before->level_error_nm + slot->level_error_nm) + PHANTOM_CARRY_NM;
+
+	if (phantom_set_reshaped(before, slot)) {
+		pass->blend_ns = servo->crossfade_ns;
+		touch->carry_nm =
+			max_t(u32, touch->carry_nm, min_t(u64, apart, PHANTOM_COVERAGE_MAX_NM));
+	}
+	if (before->patch_count && !slot->patch_count)
+		pass->blend_ns = PHANTOM_FADE_NS;
+}
+
 static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_pass *pass)
 {
 	struct phantom_slot *before = servo->active;
@@ -159,10 +179,7 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 	if (!slot)
 		return;
 	if (before) {
-		/* a scene that became empty here, or another shape, is no mere swap */
-		if (phantom_set_revised(before, slot) ||
-		    (before->patch_count && !slot->patch_count))
-			pass->blend = true;
+		phantom_servo_compare(servo, before, slot, pass);
 		phantom_set_release(before);
 	}
 	servo->active = slot;
@@ -187,7 +204,7 @@ static void phantom_servo_take_model(struct phantom_servo *servo, struct phantom
 	servo->active_model = model;
 	phantom_model_unpack(model, &servo->job.model);
 	servo->stats.next.model = servo->job.model;
-	pass->blend = true;
+	pass->blend_ns = PHANTOM_FADE_NS;
 	if (servo->job.model.model == PHANTOM_MODEL_OFF ||
 	    servo->job.model.proxy == PHANTOM_PROXY_OFF)
 		phantom_servo_forget_touch(servo);
@@ -217,6 +234,47 @@ static bool phantom_servo_place(struct phantom_servo *servo, const struct phanto
 	       phantom_set_covers(slot, job->tip_nm, 0);
 }
 
+/* The job's path begins lift_nm over the proxy, or where the tip was. False: that does not fit. */
+static bool phantom_servo_lift(struct phantom_servo *servo, u64 lift_nm)
+{
+	const struct phantom_touch *touch = &servo->touch;
+	const s64 *base_nm = touch->inside ? touch->proxy_nm : touch->previous_nm;
+	struct phantom_float_job *job = &servo->job;
+	s64 start_nm[3];
+	int axis;
+
+	for (axis = 0; axis < 3; axis++)
+		start_nm[axis] =
+			base_nm[axis] + (s64)lift_nm * touch->normal_q30[axis] / PHANTOM_Q30_ONE;
+	return phantom_set_relative(servo->active, start_nm, job->previous_nm);
+}
+
+/*
+ * CHANGE OF GEOMETRY. The surface that the tip touched, or that the proxy lies on, is another one
+ * now, a little beside the old. The tick is told that the tip comes from outside, along the normal
+ * of the old contact: if the new surface stands between, the proxy is where that path crosses it.
+ * First from as far as the two may differ; if nothing at all is felt then, from a contact radius
+ * farther: it may have risen over the tip. (Not at once: in a narrow slot that start lies behind
+ * another wall.)
+ */
+static void phantom_servo_carry(struct phantom_servo *servo)
+{
+	struct phantom_float_job *job = &servo->job;
+	u64 lift_nm = servo->touch.carry_nm;
+	int attempt;
+
+	for (attempt = 0; attempt < 2; attempt++) {
+		job->inside = 0;
+		job->proxy_face = PHANTOM_PATCH_NONE;
+		memcpy(job->proxy_nm, job->tip_nm, sizeof(job->proxy_nm));
+		job->path_valid = phantom_servo_lift(servo, lift_nm);
+		phantom_servo_float_tick(servo, servo->active->ops);
+		if (job->inside || job->contacts)
+			return;
+		lift_nm += servo->active->reach_nm;
+	}
+}
+
 static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_pass *pass)
 {
 	const struct phantom_slot *slot = servo->active;
@@ -235,12 +293,17 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 	for (axis = 0; axis < 3; axis++)
 		job->velocity_nm_s[axis] =
 			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
-	phantom_servo_float_tick(servo, slot->ops);
+	if (touch->carry_nm && touch->valid)
+		phantom_servo_carry(servo);
+	else
+		phantom_servo_float_tick(servo, slot->ops);
 
+	touch->carry_nm = 0;
 	touch->inside = job->inside;
 	touch->proxy_face = job->inside ? job->proxy_face : PHANTOM_PATCH_NONE;
 	for (axis = 0; axis < 3; axis++)
 		touch->proxy_nm[axis] = slot->origin_nm[axis] + job->proxy_nm[axis];
+	memcpy(touch->normal_q30, job->normal_q30, sizeof(touch->normal_q30));
 	memcpy(pass->target_un, job->force_un, sizeof(pass->target_un));
 	memcpy(pass->normal_q30, job->normal_q30, sizeof(pass->normal_q30));
 	pass->contacts = job->contacts;
@@ -277,7 +340,7 @@ static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pa
 		phantom_servo_forget_touch(servo);
 	}
 	if (reached != servo->reached)
-		pass->blend = true;
+		pass->blend_ns = PHANTOM_FADE_NS;
 	servo->reached = reached;
 	if (touch->inside)
 		pass->flags |= PHANTOM_TICK_INSIDE;
@@ -336,7 +399,8 @@ static void phantom_servo_act(struct phantom_servo *servo, struct phantom_pass *
 	u32 wish;
 	int error;
 
-	if (pass->blend && phantom_fade_begin(&servo->fade, pass->target_un, pass->now_ns))
+	if (pass->blend_ns &&
+	    phantom_fade_begin(&servo->fade, pass->target_un, pass->now_ns, pass->blend_ns))
 		servo->stats.next.fades++;
 	if (phantom_fade_blend(&servo->fade, pass->target_un, pass->now_ns, pass->target_un))
 		pass->flags |= PHANTOM_TICK_FADING;

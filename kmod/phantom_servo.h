@@ -49,6 +49,8 @@ struct phantom_touch {
 	s64 previous_nm[3]; /* the tip where contact was evaluated last */
 	s64 proxy_nm[3]; /* while inside */
 	u32 proxy_face;
+	s32 normal_q30[3]; /* of the contact there; zero without one */
+	u32 carry_nm; /* the geometry has changed since, by about that much; 0 = it has not */
 	u64 evaluated_ns; /* when */
 };
 
@@ -65,7 +67,7 @@ struct phantom_pass {
 	s32 normal_q30[3];
 	u32 contacts;
 	u32 flags; /* PHANTOM_TICK_... */
-	bool blend; /* something changed that needs a fade */
+	u64 blend_ns; /* something changed that needs a fade of that length; 0 = nothing */
 };
 
 struct phantom_servo {
@@ -117,6 +119,7 @@ struct phantom_servo {
 	struct phantom_slot *active; /* the set in use */
 	u64 active_model; /* packed */
 	u64 stale_ns;
+	u64 crossfade_ns; /* from one geometry to another */
 	u64 next_ns; /* begin of the next period */
 	u64 last_ns; /* time of the last tick */
 	u64 woken_ns; /* when readers were woken last */

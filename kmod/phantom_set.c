@@ -184,10 +184,12 @@ void phantom_set_release(struct phantom_slot *slot)
 	smp_store_release(&slot->holder, PHANTOM_SLOT_FREE); /* pairs with phantom_set_pick() */
 }
 
-bool phantom_set_revised(const struct phantom_slot *before, const struct phantom_slot *after)
+bool phantom_set_reshaped(const struct phantom_slot *before, const struct phantom_slot *after)
 {
 	u32 i, j;
 
+	if (before->level != after->level)
+		return true;
 	for (i = 0; i < before->object_count; i++)
 		for (j = 0; j < after->object_count; j++)
 			if (before->object[i] == after->object[j] &&

@@ -100,8 +100,8 @@ int phantom_set_check_arrays(struct phantom_set_copy *copy);
 struct phantom_slot *phantom_set_take(struct phantom_sets *sets);
 void phantom_set_release(struct phantom_slot *slot);
 
-/* True when both know an object but disagree about its revision. */
-bool phantom_set_revised(const struct phantom_slot *before, const struct phantom_slot *after);
+/* True when the two disagree about an object's revision, or are of different levels of detail. */
+bool phantom_set_reshaped(const struct phantom_slot *before, const struct phantom_slot *after);
 /* `position` relative to the slot's origin; false when it does not fit: it is not covered. */
 bool phantom_set_relative(const struct phantom_slot *slot, const s64 position_nm[3],
 			  s32 relative_nm[3]);

@@ -61,11 +61,20 @@
  *   often. A tip more than 2^31 nm from the origin is not covered, and a radius of more than 2 m
  *   counts as 2 m. A swap between two sets that both cover the tip changes the force by rounding
  *   only. The force also fades, from what it is to what it shall be, when coverage comes back,
- *   the model changes, an object's revision changes, or a set without patches follows one with.
+ *   the model changes, or a set without patches follows one with.
  *   An uncovered tip keeps its state (inside, proxy) for PHANTOM_MEMORY_NS. Covered again in
  *   time, it is looked for on the straight path from where it was last covered, and found inside
  *   when that crossed the surface. After longer it counts as outside: no force until it has left
  *   the surface by itself.
+ *
+ * OTHER GEOMETRY
+ *   A set whose level is not that of the set before, or that knows an object by another revision,
+ *   has other triangles where the same surface was: face numbers mean nothing across such a change.
+ *   The force goes over to the new surface within start.crossfade_ms, and follows the tip on it from
+ *   the first tick on. A proxy is carried to the new surface along its normal, by up to the sum of
+ *   the two levels' errors, or the set's largest contact radius where the surface itself moved: so
+ *   far may a surface rise from one set to the next and still be felt by a tip that touches it or is
+ *   below it. One that sinks below the tip lets it go.
  *
  * POLL
  *   POLLIN    a record can be read, or the end of a run has not yet been read.
@@ -99,8 +108,8 @@
  *                 EOPNOTSUPP  a known value that info.features does not offer
  *   START         EBUSY    not IDLE, or the machine is about to sleep
  *                 EIO      a latched fault: CLEAR_FAULT first
- *                 EINVAL   a force above the device's, ramp_ms > PHANTOM_RAMP_MAX_MS, unknown
- *                          flag, reserved not zero
+ *                 EINVAL   a force above the device's, ramp_ms or crossfade_ms >
+ *                          PHANTOM_RAMP_MAX_MS, unknown flag
  *                 ENODEV   there is no device
  *                 ETIMEDOUT  the device does not answer
  *                 EPERM    PHANTOM_START_LIMITS_OFF on a device that is not simulated
@@ -175,6 +184,7 @@
 #define PHANTOM_FEATURE_MOVING_OBJECTS (1ULL << 7)
 #define PHANTOM_FEATURE_SIM_MOVE (1ULL << 8)
 #define PHANTOM_FEATURE_FANS (1ULL << 9) /* patches of kind EDGE and CORNER */
+#define PHANTOM_FEATURE_CROSSFADE (1ULL << 10) /* start.crossfade_ms; without it that must be 0 */
 
 /* ---- effects (material.effects, set.effects) ----------------------------- */
 #define PHANTOM_EFFECT_DAMPING (1U << 0) /* normal damping; never pulls */
@@ -277,7 +287,7 @@ struct phantom_start {
 	__u32 max_speed_um_s; /* overspeed fault, of the filtered velocity [5 m/s] */
 	__u32 stall_us; /* stall fault [20000 us] */
 	__u32 stale_ms; /* a set older than this fades [100 ms] */
-	__u32 reserved;
+	__u32 crossfade_ms; /* to another level of detail or revision of an object [20 ms] */
 };
 
 /*
@@ -297,7 +307,7 @@ struct phantom_patch {
 	__s32 vertex_nm[3][3]; /* [corner][axis], relative to the set's origin */
 	__s32 normal_q30[3][3]; /* [corner][axis], unit */
 	__u32 vertex[3]; /* vertex numbers, unique in the scene: equal = the same corner */
-	__u32 face; /* face number, unique in the scene and the same in every set */
+	__u32 face; /* face number, unique in the scene and the same in every set of a level */
 	__u32 neighbour[3]; /* index in this set over edge i (corner i to i+1), or NONE */
 	__u32 object; /* index into the set's objects */
 	__u32 material; /* index into the set's materials */
@@ -334,7 +344,7 @@ struct phantom_set {
 	__u32 material_count;
 	__u32 object_count;
 	__u32 effects; /* union of the materials' effects, exactly */
-	__u32 level; /* of detail; 0 is the mesh itself */
+	__u32 level; /* of detail; 0 is the mesh itself; another one crossfades */
 	__u32 level_error_nm; /* how far that level lies from the mesh */
 	__u32 flags; /* 0 */
 	__u32 reserved;

@@ -142,7 +142,7 @@ TEST_F(Errors, Start)
         return feeder.start(start);
     };
     EXPECT_EQ(with([](phantom_start& s) { s.flags = 2; }), -EINVAL);
-    EXPECT_EQ(with([](phantom_start& s) { s.reserved = 1; }), -EINVAL);
+    EXPECT_EQ(with([](phantom_start& s) { s.crossfade_ms = PHANTOM_RAMP_MAX_MS + 1; }), -EINVAL);
     EXPECT_EQ(with([](phantom_start& s) { s.max_force_un = 10'000'001; }), -EINVAL);
     EXPECT_EQ(with([](phantom_start& s) { s.ramp_ms = PHANTOM_RAMP_MAX_MS + 1; }), -EINVAL);
     EXPECT_EQ(feeder.status().state, std::uint32_t(PHANTOM_STATE_IDLE));

@@ -30,7 +30,7 @@ TEST_F(Safety, StartRampsLinearly)
            .max_speed_um_s = 0,
            .stall_us = 0,
            .stale_ms = 0,
-           .reserved = 0},
+           .crossfade_ms = 0},
           2'000'000);
     step(300);
     const auto records = feeder.read();

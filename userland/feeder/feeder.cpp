@@ -203,6 +203,9 @@ Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::
         self.builder.build(self.nearest.hits, want.centre, self.nearest.coverage, self.set);
         report.hits = self.nearest.hits;
     }
+    self.set.header.level = self.options.level;
+    self.set.header.level_error_nm =
+        static_cast<std::uint32_t>(std::clamp(self.options.level_error_mm / mm_per_nm, 0.0, 4e9));
     const auto built = Clock::now();
     report.patches = static_cast<std::uint32_t>(self.set.patches.size());
     report.coverage_mm = self.set.header.radius_nm * mm_per_nm;

@@ -19,6 +19,8 @@ struct FeederOptions {
     bool all = false;          ///< one set with every triangle of the scene; user mode only
     /// Double the budget (to PHANTOM_PATCHES_MAX) while the set does not cover R and the way to the next.
     bool grow_budget = true;
+    std::uint32_t level = 0; ///< of detail that the scene is; 0 is the mesh itself
+    double level_error_mm = 0;
     double search_radius_mm = 50.0; ///< no triangle farther than this is looked for
     double rate_hz = 250.0;         ///< of run()
 };

@@ -177,15 +177,33 @@ struct BruteForce::Cells {
         const mesh::Triple& v = mesh->faces[face];
         return {mesh->vertices[v[0]], mesh->vertices[v[1]], mesh->vertices[v[2]]};
     }
-    void look(const std::vector<std::uint32_t>& near, const Vec3& from, Point& best) const
+    /// The vertex normals, interpolated at a point of the face.
+    [[nodiscard]] Vec3 normal(std::uint32_t face, const Vec3& at) const
+    {
+        const std::array<Vec3, 3> x = corners(face);
+        const Vec3 area = cross(x[1] - x[0], x[2] - x[0]);
+        Vec3 sum{};
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 &a = x[(i + 1) % 3], &b = x[(i + 2) % 3];
+            const double part = dot(cross(b - a, at - a), area) / dot(area, area);
+            sum = sum + part * mesh->normals[mesh->face_normals[face][i]];
+        }
+        return unit(sum);
+    }
+    /// Returns the face that the nearest point is on when it is nearer than `best`, else `otherwise`.
+    std::uint32_t look(const std::vector<std::uint32_t>& near, const Vec3& from, Point& best,
+                       std::uint32_t otherwise) const
     {
         for (const std::uint32_t face : near) {
             const std::array<Vec3, 3> x = corners(face);
             const Vec3 at = nearest_of_triangle(from, x);
             const double distance = length(at - from);
-            if (distance < best.distance_mm)
-                best = {at, distance, dot(cross(x[1] - x[0], x[2] - x[0]), from - x[0]) < 0};
+            if (distance < best.distance_mm) {
+                best = {at, distance, dot(cross(x[1] - x[0], x[2] - x[0]), from - x[0]) < 0, {}};
+                otherwise = face;
+            }
         }
+        return otherwise;
     }
 };
 
@@ -207,6 +225,7 @@ BruteForce::Point BruteForce::nearest(const std::array<double, 3>& from) const
 {
     Point best;
     best.distance_mm = 1e300;
+    std::uint32_t face = 0;
     const std::array<int, 3> middle = Cells::cell(from);
     for (int ring = 0; ring < Cells::rings_max; ++ring) {
         if ((ring - 1) * Cells::side_mm > best.distance_mm + cells_->reach_mm)
@@ -218,9 +237,11 @@ BruteForce::Point BruteForce::nearest(const std::array<double, 3>& from) const
                     const auto at =
                         cells_->faces.find(Cells::key({middle[0] + x, middle[1] + y, middle[2] + z}));
                     if (at != cells_->faces.end())
-                        cells_->look(at->second, from, best);
+                        face = cells_->look(at->second, from, best, face);
                 }
     }
+    if (best.distance_mm < 1e300)
+        best.normal = cells_->normal(face, best.at);
     return best;
 }
 

@@ -44,6 +44,7 @@ class BruteForce {
         std::array<double, 3> at{};
         double distance_mm = 0;
         bool inside = false; ///< the point asked for lies under the face that the nearest point is on
+        std::array<double, 3> normal{}; ///< of the surface there, interpolated, unit
     };
     /// Within some 15 mm of the surface.
     [[nodiscard]] Point nearest(const std::array<double, 3>& from) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -11,14 +12,12 @@
 #include "base/vector.hpp"
 #include "device/device.hpp"
 #include "feeder/feeder.hpp"
+#include "feeder/level_choice.hpp"
 #include "feeder/servo_choice.hpp"
 
 namespace phantom::study {
 
 namespace {
-
-constexpr double stiffness_n_mm = 0.5;
-constexpr double contact_radius_mm = 0.2;
 
 /// The tip's side is compared only this far from the surface: nearer, rounding to nm may decide.
 constexpr double sure_mm = 1e-4;
@@ -35,21 +34,36 @@ double percentile(std::vector<double>& sorted, double part)
                           : sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
 }
 
-Vec3 millimetres(const __s64 nm[3])
+template <class Integer>
+Vec3 from_micro(const Integer (&v)[3])
 {
-    return {1e-6 * static_cast<double>(nm[0]), 1e-6 * static_cast<double>(nm[1]),
-            1e-6 * static_cast<double>(nm[2])};
+    return {1e-6 * static_cast<double>(v[0]), 1e-6 * static_cast<double>(v[1]),
+            1e-6 * static_cast<double>(v[2])};
+}
+
+std::vector<feeder::DetailLevel> details(const PenetrationSurface& surface)
+{
+    std::vector<feeder::DetailLevel> out;
+    for (const auto& level : surface.levels())
+        out.push_back(level->detail);
+    return out;
 }
 
 class Run {
   public:
-    Run(const BruteForce& oracle, const PenetrationOptions& options, device::Device device,
-        const scene::Scene& scene, const fdh::SceneTree<14>& tree)
-        : oracle_(oracle),
-          options_(options),
-          device_(std::move(device)),
-          feeder_(scene, tree, device_, {.budget = options.budget, .grow_budget = options.grow_budget})
+    Run(const PenetrationSurface& surface, const PenetrationOptions& options, device::Device device)
+        : surface_(surface), options_(options), device_(std::move(device)), choice_(details(surface))
     {
+        for (std::size_t number = 0; number < surface.levels().size(); ++number) {
+            const SurfaceLevel& level = *surface.levels()[number];
+            feeders_.push_back(std::make_unique<feeder::Feeder>(
+                level.scene, level.tree, device_,
+                feeder::FeederOptions{.budget = surface.budget(),
+                                      .grow_budget = false,
+                                      .level = static_cast<std::uint32_t>(number),
+                                      .level_error_mm = level.detail.error_mm}));
+        }
+        result_.level_ticks.resize(feeders_.size());
     }
 
     Result<PenetrationResult> run()
@@ -67,26 +81,57 @@ class Run {
     }
 
   private:
+    /// The level for the next set, by what the tick before knew.
+    std::size_t choose()
+    {
+        if (options_.timely)
+            return 0;
+        const phantom_status status = device_.status();
+        const Vec3 velocity = from_micro(status.velocity_nm_s);
+        const Vec3 deep = seen_ - proxy_;
+        feeder::LevelDemand demand;
+        demand.speed_mm_s = length(velocity);
+        demand.delay_s = options_.feed_every / options_.path.rate_hz;
+        demand.contact_radius_mm = soft_radius_mm;
+        if (inside_) {
+            demand.depth_mm = length(deep);
+            demand.dive_mm_s = dot(velocity, unit(deep));
+        }
+        return choice_.choose(demand);
+    }
+
+    Status feed(const Vec3& tip)
+    {
+        const Vec3& at = options_.timely ? tip : seen_;
+        const std::size_t level = choose();
+        const Result<feeder::FeedReport> report = feeders_[level]->feed(at, inside_ ? proxy_ : at, inside_);
+        if (!report)
+            return report.error();
+        level_ = level;
+        result_.patches_max = std::max(result_.patches_max, report->patches);
+        return success();
+    }
+
+    Status begin()
+    {
+        phantom_start start{};
+        start.flags = PHANTOM_START_LIMITS_OFF;
+        start.stale_ms = never_stale_ms;
+        return device_.start(start);
+    }
+
     Status tick(const Vec3& tip, std::size_t index)
     {
         if (index == 0)
             seen_ = tip;
-        if (index % options_.feed_every == 0) {
-            const Vec3& at = options_.feed_every == 1 ? tip : seen_;
-            const Result<feeder::FeedReport> report = feeder_.feed(at, inside_ ? proxy_ : at, inside_);
-            if (!report)
-                return report.error();
-            result_.patches_max = std::max(result_.patches_max, report->patches);
-        }
+        if (index % options_.feed_every == 0)
+            if (Status status = feed(tip); !status)
+                return status;
         if (Status status = device_.move_simulated_tip(feeder::to_nanometres(tip)); !status)
             return status;
-        if (index == 0) {
-            phantom_start start{};
-            start.flags = PHANTOM_START_LIMITS_OFF;
-            start.stale_ms = never_stale_ms;
-            if (Status status = device_.start(start); !status)
+        if (index == 0)
+            if (Status status = begin(); !status)
                 return status;
-        }
         if (Status status = device_.step(1); !status)
             return status;
         const Result<std::vector<phantom_tick>> ticks = device_.read_ticks();
@@ -102,63 +147,57 @@ class Run {
 
     void take(const phantom_tick& record)
     {
-        const Vec3 force{1e-6 * record.force_un[0], 1e-6 * record.force_un[1], 1e-6 * record.force_un[2]};
-        seen_ = millimetres(record.tip_nm);
-        proxy_ = millimetres(record.proxy_nm);
-        inside_ = (record.flags & PHANTOM_TICK_INSIDE) != 0;
-        const bool touching = record.contacts > 0 && (record.flags & PHANTOM_TICK_FADING) == 0;
-        if (touching && touching_)
+        const Vec3 force = from_micro(record.force_un);
+        const bool inside = (record.flags & PHANTOM_TICK_INSIDE) != 0;
+        if (inside && inside_)
             result_.step_max = std::max(result_.step_max, length(force - force_));
-        touching_ = touching;
+        seen_ = from_micro(record.tip_nm);
+        proxy_ = from_micro(record.proxy_nm);
+        inside_ = inside;
         force_ = force;
     }
 
     void compare(const phantom_tick& record)
     {
-        const BruteForce::Point nearest = oracle_.nearest(seen_);
+        const BruteForce::Point nearest = surface_.oracle().nearest(seen_);
         if (nearest.distance_mm < sure_mm)
             return;
+        // What lies between two levels is inside for the one and outside for the other.
+        const double doubt_mm = choice_.level(level_).error_mm + sure_mm;
         if (!nearest.inside) {
             ++result_.outside;
-            result_.kept += inside_;
+            result_.kept += inside_ && nearest.distance_mm > doubt_mm;
             return;
         }
         ++result_.under;
-        if (record.flags & PHANTOM_TICK_UNCOVERED)
+        ++result_.level_ticks[level_];
+        if (record.flags & PHANTOM_TICK_UNCOVERED) {
             ++result_.lost;
-        else if (!inside_)
-            ++result_.fell_through;
-        else {
-            errors_.push_back(stiffness_n_mm * length(proxy_ - nearest.at));
+        } else if (!inside_) {
+            result_.fell_through += nearest.distance_mm > doubt_mm;
+        } else {
+            const Vec3 exact = soft_stiffness_n_mm * (soft_radius_mm * nearest.normal + (nearest.at - seen_));
+            errors_.push_back(length(force_ - exact));
             result_.stuck += length(proxy_ - seen_) > nearest.distance_mm + stuck_mm;
         }
     }
 
-    const BruteForce& oracle_;
+    const PenetrationSurface& surface_;
     const PenetrationOptions& options_;
     device::Device device_;
-    feeder::Feeder feeder_;
+    std::vector<std::unique_ptr<feeder::Feeder>> feeders_; ///< one per level
+    feeder::LevelChoice choice_;
+    std::size_t level_ = 0;           ///< of the set in use
     Vec3 seen_{}, proxy_{}, force_{}; ///< after the tick before
-    bool inside_ = false, touching_ = false;
+    bool inside_ = false;
     std::vector<double> errors_;
     PenetrationResult result_;
 };
 
 } // namespace
 
-scene::Scene penetration_scene(mesh::Mesh mesh)
-{
-    scene::Scene scene;
-    scene.materials.push_back({"soft", stiffness_n_mm, contact_radius_mm, {}});
-    scene::Object object;
-    object.name = "bumpy sphere";
-    object.mesh = std::move(mesh);
-    scene.objects.push_back(std::move(object));
-    return scene;
-}
-
-Result<PenetrationResult> run_penetration(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
-                                          const BruteForce& oracle, const PenetrationOptions& options)
+Result<PenetrationResult> run_penetration(const PenetrationSurface& surface,
+                                          const PenetrationOptions& options)
 {
     device::UsermodeOptions usermode;
     usermode.virtual_clock = true;
@@ -173,7 +212,7 @@ Result<PenetrationResult> run_penetration(const scene::Scene& scene, const fdh::
         return model.error();
     if (Status status = device->set_model(*model); !status)
         return status.error();
-    return Run(oracle, options, std::move(*device), scene, tree).run();
+    return Run(surface, options, std::move(*device)).run();
 }
 
 } // namespace phantom::study

@@ -5,21 +5,21 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/result.hpp"
-#include "fdh/scene_tree.hpp"
-#include "scene/scene.hpp"
 #include "study/bumpy_sphere.hpp"
+#include "study/penetration_surface.hpp"
 
 namespace phantom::study {
 
 struct PenetrationOptions {
     SpiralOptions path;
     std::string proxy = "constrained";
-    std::uint32_t budget = 64;    ///< triangles in a set
-    bool grow_budget = false;     ///< as the feeder does by default when a set does not cover enough
-    std::uint32_t feed_every = 1; ///< ticks between sets. 1: the set knows the tip of its tick, as in a
-                                  ///< trace; else it knows the tick before, as the feeder of a running device
+    std::uint32_t feed_every = 1; ///< ticks between sets
+    /// A set knows the tip of the tick that takes it, as in a trace. Else that of the tick before, and speed
+    /// and delay choose the level of detail, as the feeder of a running device has to.
+    bool timely = true;
     std::uint32_t check_every = 4; ///< ticks between comparisons
 };
 
@@ -31,17 +31,16 @@ struct PenetrationResult {
     std::uint64_t outside = 0;      ///< compared ticks with the tip over the surface
     std::uint64_t kept = 0;         ///< of these: taken for inside
     std::uint64_t stuck = 0;        ///< proxy farther from the tip than the nearest point by a mm and more
+    /// Of the sets that ticks under the surface used, by level.
+    std::vector<std::uint64_t> level_ticks;
     std::uint32_t patches_max = 0;
-    /// Force, N: k times the proxy's distance from the nearest point.
+    /// The force, sent, from k (R n + V - P) at the point V of the finest level nearest to the tip P, N.
     double error_p50 = 0, error_p99 = 0, error_max = 0;
-    /// Largest step of the force between two ticks, both in contact, N.
+    /// Largest step of the force between two ticks, both under the surface, N.
     double step_max = 0;
 };
 
-/// One object with the mesh, k = 0.5 N/mm, and R so small that 64 triangles cover it.
-scene::Scene penetration_scene(mesh::Mesh mesh);
-
-Result<PenetrationResult> run_penetration(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
-                                          const BruteForce& oracle, const PenetrationOptions& options);
+Result<PenetrationResult> run_penetration(const PenetrationSurface& surface,
+                                          const PenetrationOptions& options);
 
 } // namespace phantom::study

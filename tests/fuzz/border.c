@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <phantom_platform.h>
+
+#include "border.h"
+#include "phantom_set.h"
+
+static int border_copy(struct phantom_set_copy* copy)
+{
+    const struct phantom_set* header = &copy->header;
+
+    if (copy_from_user(copy->materials, u64_to_user_ptr(header->materials),
+                       header->material_count * sizeof(copy->materials[0])) ||
+        copy_from_user(copy->objects, u64_to_user_ptr(header->objects),
+                       header->object_count * sizeof(copy->objects[0])) ||
+        (header->patch_count && u64_to_user_ptr(header->patches) == NULL))
+        return -EFAULT;
+    copy->patches = u64_to_user_ptr(header->patches);
+    return 0;
+}
+
+int border_check(const struct phantom_set* set, uint64_t last_id, struct border_set* out)
+{
+    static struct phantom_set_copy copy;
+    int error;
+    u32 i;
+
+    memset(&copy, 0, sizeof(copy));
+    copy.header = *set;
+    error = phantom_set_check_header(&copy.header, last_id, PHANTOM_PATCHES_MAX);
+    if (!error)
+        error = border_copy(&copy);
+    if (!error)
+        error = phantom_set_check_arrays(&copy);
+    if (error)
+        return error;
+    memcpy(out->origin_nm, set->origin_nm, sizeof(out->origin_nm));
+    memcpy(out->centre_nm, set->centre_nm, sizeof(out->centre_nm));
+    out->radius_nm = min_t(u32, set->radius_nm, PHANTOM_COVERAGE_MAX_NM);
+    out->face_count = copy.face_count;
+    out->reach_nm = 0;
+    for (i = 0; i < set->material_count; i++)
+        out->reach_nm = max_t(u32, out->reach_nm, copy.materials[i].radius_nm);
+    return 0;
+}
+
+static void border_slot(const struct border_set* set, struct phantom_slot* slot)
+{
+    memcpy(slot->origin_nm, set->origin_nm, sizeof(slot->origin_nm));
+    memcpy(slot->centre_nm, set->centre_nm, sizeof(slot->centre_nm));
+    slot->radius_nm = set->radius_nm;
+}
+
+bool border_relative(const struct border_set* set, const int64_t position_nm[3], int32_t relative_nm[3])
+{
+    struct phantom_slot slot;
+    s64 position[3];
+
+    border_slot(set, &slot);
+    memcpy(position, position_nm, sizeof(position));
+    return phantom_set_relative(&slot, position, relative_nm);
+}
+
+bool border_covers(const struct border_set* set, const int32_t point_nm[3], uint32_t ball_nm)
+{
+    struct phantom_slot slot;
+
+    border_slot(set, &slot);
+    return phantom_set_covers(&slot, point_nm, ball_nm);
+}
