@@ -34,6 +34,9 @@ struct paper_edge {
 	struct row3 wall_along; /* (m_(i+1) - m_i) x e / |e| */
 };
 
+/* A shell that leans farther outward than that, per height, is not followed. */
+#define LEAN_MOST 32
+
 struct block {
 	/* read for every patch on every tick */
 	nm_row corner[3][3]; /* [corner][axis] */
@@ -41,6 +44,9 @@ struct block {
 	real_row radius; /* R of the patch's material */
 	struct row3 centre; /* centroid - x0 */
 	real_row extent; /* largest distance of a corner from the centroid */
+	/* how far the shell leans outward, per height over the plane; LEAN_MOST: anywhere in reach */
+	real_row lean; /* of projected */
+	real_row lean_paper; /* of paper, at the sharpest corner */
 
 	/* read where the tip is near */
 	real_row stiffness; /* k */
@@ -199,6 +205,23 @@ LANES_INLINE mask_lanes within_reach(const struct block *block, u32 step, struct
 	lanes far = reach + block->extent[step];
 
 	return (lanes3_dot(away, away) <= mul(far, far)) & (far >= 0);
+}
+
+/*
+ * Lanes whose shell may hold the point that is q from x0 and `height` over the plane: those in reach
+ * with no more beside the face than its extent and what the shell leans outward at that height.
+ */
+LANES_INLINE mask_lanes within_shell(const struct block *block, u32 step, struct lanes3 q,
+				     lanes height, lanes lean, lanes margin)
+{
+	struct lanes3 g = row3_step(&block->face_normal, step);
+	struct lanes3 away = lanes3_sub(q, row3_step(&block->centre, step));
+	struct lanes3 beside = lanes3_sub(away, lanes3_scale(g, height));
+	lanes far = block->radius[step] + block->extent[step];
+	lanes side = block->extent[step] + margin + mul(lanes_abs(height), lean);
+
+	return (lanes3_dot(away, away) <= mul(far, far)) & (far >= 0) &
+	       ((lanes3_dot(beside, beside) <= mul(side, side)) | (lean >= REAL(LEAN_MOST)));
 }
 
 #endif /* PHANTOM_FLOAT_BLOCK_H */

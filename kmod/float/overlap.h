@@ -35,15 +35,21 @@ LANES_INLINE mask_lanes overlap_crossed(const struct phantom_float_set *set,
 					const struct paper_step *at, struct lanes3 way)
 {
 	const struct block *block = &set->blocks[at->block];
-	lanes u = lanes3_dot(at->plane[0], way);
-	lanes v = lanes3_dot(at->plane[1], way);
-	lanes w = lanes3_dot(at->plane[2], way);
-	lanes low = lanes_min(lanes_min(u, v), w), high = lanes_max(lanes_max(u, v), w);
 	/* the plane of the triangle is met at d / -(g . way) of the segment */
 	lanes down = -lanes3_dot(row3_step(&block->face_normal, at->step), way);
+	mask_lanes met = (at->height > mul(lanes_all(OVERLAP_ENDS), down)) &
+			 (at->height < mul(lanes_all(REAL(1) - OVERLAP_ENDS), down)) & at->contact;
+	lanes u, v, w, low, high;
 
-	return ((low >= 0) | (high <= 0)) & (at->height > mul(lanes_all(OVERLAP_ENDS), down)) &
-	       (at->height < mul(lanes_all(REAL(1) - OVERLAP_ENDS), down)) & at->contact;
+	if (!mask_bits(met))
+		return met;
+	u = lanes3_dot(at->plane[0], way);
+	v = lanes3_dot(at->plane[1], way);
+	w = lanes3_dot(at->plane[2], way);
+	low = lanes_min(lanes_min(u, v), w);
+	high = lanes_max(lanes_max(u, v), w);
+
+	return ((low >= 0) | (high <= 0)) & met;
 }
 
 /* The edges of its triangle on which D lies, as bits 0 ... 2. */

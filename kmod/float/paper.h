@@ -29,6 +29,9 @@
 /* Relative to the largest wall distance; its square is still a normal float32. */
 #define VANISHING REAL_VANISHING
 
+/* In units of rounding_mm(): walls give way by one, at a sharp corner several times that. */
+#define PAPER_MARGIN 64
+
 /* Cosine between n and g. */
 #define GRAZING REAL(1e-4)
 
@@ -89,7 +92,9 @@ LANES_INLINE mask_lanes shell_candidates(const struct block *block, u32 step, st
 {
 	lanes radius = block->radius[step];
 
-	return (height > -rounding) & (height < radius) & within_reach(block, step, q, radius);
+	return (height > -rounding) & (height < radius) &
+	       within_shell(block, step, q, height, block->lean_paper[step],
+			    lanes_all(PAPER_MARGIN * rounding));
 }
 
 /*

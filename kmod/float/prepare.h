@@ -248,6 +248,40 @@ static inline wide normal_length_min(const struct patch_geometry *p)
 	return wide_less(NORMAL_LENGTH_MIN, least) ? least : NORMAL_LENGTH_MIN;
 }
 
+/*
+ * How far the shell leans outward: P = sum b_i (x_i + h m_i) is h sum b_i m_i beside the face, at a
+ * height of h sum b_i m_i.g; so no more than max |m_i beside g| / min m_i.g times its height.
+ * paper's walls lean as much, each on its own: at a corner of angle a two of them meet 1 / sin(a / 2)
+ * times as far out.
+ */
+static inline void prepare_lean(struct block *block, u32 lane, const struct patch_geometry *p)
+{
+	wide least = WIDE(1), most = WIDE(0), sharpest = WIDE(-1), lean = WIDE(LEAN_MOST), half;
+	u32 i;
+
+	for (i = 0; i < 3; i++) {
+		const struct wide3 *e = &p->edge[i], *before = &p->edge[(i + 2) % 3];
+		wide along = wide3_dot(p->normal[i], p->lead), beside, cosine;
+
+		beside = wide3_length(wide3_sub(p->normal[i], wide3_scale(p->lead, along)));
+		/* of the angle at corner i */
+		cosine = wide_div(wide_sub(WIDE(0), wide3_dot(*e, *before)),
+				  wide_sqrt(wide_mul(p->length2[i], p->length2[(i + 2) % 3])));
+		least = wide_less(along, least) ? along : least;
+		most = wide_less(most, beside) ? beside : most;
+		sharpest = wide_less(sharpest, cosine) ? cosine : sharpest;
+	}
+	if (!p->order && wide_less(WIDE(1.0 / LEAN_MOST), least))
+		lean = wide_add(wide_div(most, least), WIDE(1e-5));
+	row_set(block->lean, lane, lean);
+	/* sin^2(a / 2) = (1 - cos a) / 2 */
+	half = wide_sqrt(wide_mul(wide_sub(WIDE(1), sharpest), WIDE(0.5)));
+	if (!p->order && wide_less(lean, wide_mul(half, WIDE(LEAN_MOST))))
+		row_set(block->lean_paper, lane, wide_div(lean, half));
+	else
+		row_set(block->lean_paper, lane, WIDE(LEAN_MOST));
+}
+
 static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p)
 {
 	row3_set(&block->face_normal, lane, p->lead);
@@ -289,6 +323,7 @@ static inline void prepare_patch(struct phantom_float_set *set, struct block *bl
 	row_set(block->extent, lane, extent);
 	block->stiffness[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->stiffness;
 	prepare_edges(block, lane, p);
+	prepare_lean(block, lane, p);
 	prepare_shell(block, lane, p);
 }
 
@@ -314,6 +349,8 @@ static inline void prepare_idle(struct block *block, u32 lane)
 	row_set(block->extent, lane, WIDE(-1e6));
 	row_set(block->stiffness, lane, WIDE(0));
 	prepare_edges(block, lane, &p);
+	row_set(block->lean, lane, WIDE(0));
+	row_set(block->lean_paper, lane, WIDE(0));
 	prepare_shell(block, lane, &p);
 }
 

@@ -306,6 +306,9 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 	reach = mul(lanes_all(2 * soft), block->extent[step] + h + soft);
 	valid &= (mul(b0, turned) >= -reach) & (mul(b1, turned) >= -reach) &
 		 (mul(b2, turned) >= -reach);
+	out->accepted = valid;
+	if (!mask_bits(valid))
+		return;
 	if (mask_bits(split)) {
 		struct lanes3 away =
 			lanes3_add(w, lanes3_sub(lanes3_scale(e2, b2), lanes3_scale(e1, b1)));
@@ -359,8 +362,11 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 {
 	struct lanes3 q = from_corner(block, step, 0, tip);
 	lanes height = lanes3_dot(row3_step(&block->face_normal, step), q);
-	lanes radius = block->radius[step];
-	mask_lanes candidates = (lanes_abs(height) < radius) & within_reach(block, step, q, radius);
+	/* a first guess alone, without a Newton step, may take a tip beside the shell for one in it */
+	lanes lean = newton_steps ? block->lean[step] : lanes_all(REAL(LEAN_MOST));
+	mask_lanes candidates =
+		(lanes_abs(height) < block->radius[step]) &
+		within_shell(block, step, q, height, lean, lanes_all(4 * SOFT_WALL * rounding));
 	struct shell_point point[PROJECTED_ROOTS];
 	struct step_roots roots;
 	struct cubic c;

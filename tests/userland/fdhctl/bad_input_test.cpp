@@ -86,9 +86,9 @@ TEST_F(BadInput, OutputsThatCannotBeWritten)
 
 TEST_F(BadInput, WhatTheModuleDoesNotOfferIsNamed)
 {
-    const std::string mesh = plate(), way = write("p.csv", "time_s,x_mm,y_mm,z_mm\n0,0,0,5\n");
-    expect_failure({"trace", mesh, "--path", way, "--arith", "fixed", "-o", path("t.csv")},
-                   {"arith fixed is not offered", "arith float"});
+    const Outcome outcome = run({"load", plate(), "--usermode", "--arith", "double", "--seconds", "0.1"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("arith double is not offered"), std::string::npos) << outcome.err;
 }
 
 TEST_F(BadInput, ATriangleThatNoSetCanCarryNamesTheRemedy)

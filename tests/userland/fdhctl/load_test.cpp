@@ -66,9 +66,10 @@ TEST_F(Load, StatusRateModelAndStopReachItFromElsewhere)
     EXPECT_EQ(now["rate_hz"], 2000);
     EXPECT_TRUE(now["model"].get<std::string>().starts_with("paper, combine paper")) << now["model"];
 
-    const Outcome refused = run({"model", "--arith", "fixed"});
+    EXPECT_EQ(run({"model", "--arith", "fixed"}).status, 0);
+    const Outcome refused = run({"model", "--arith", "double"});
     EXPECT_EQ(refused.status, 1);
-    EXPECT_NE(refused.err.find("arith fixed is not offered"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("arith double is not offered"), std::string::npos) << refused.err;
 
     EXPECT_EQ(run({"stop"}).status, 0);
     const Outcome outcome = load.wait();

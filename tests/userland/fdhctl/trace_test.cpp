@@ -165,12 +165,14 @@ TEST_F(Trace, ModelOffIsWithoutForce)
         EXPECT_EQ(row[fz], 0);
 }
 
-TEST_F(Trace, DoubleArithmeticAgreesWithFloat)
+TEST_F(Trace, EveryArithmeticAgreesWithFloat)
 {
     const auto single = trace(plate(), dip());
-    const auto twice = trace(plate(), dip(), {"--arith", "double"});
-    for (std::size_t i = 0; i < single.size(); ++i)
-        EXPECT_NEAR(single[i][fz], twice[i][fz], 2e-5);
+    for (const char* arith : {"double", "fixed"}) {
+        const auto other = trace(plate(), dip(), {"--arith", arith});
+        for (std::size_t i = 0; i < single.size(); ++i)
+            EXPECT_NEAR(single[i][fz], other[i][fz], 2e-5) << arith;
+    }
 }
 
 TEST_F(Trace, WithLimitsTheForceRampsUp)
