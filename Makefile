@@ -37,6 +37,14 @@ fuzz: ## arbitrary sets and paths through the border, with libFuzzer for SECONDS
 	@tools/bootstrap fuzz
 	@FUZZ_SECONDS=$(or $(SECONDS),600) tools/fuzz
 
+hard-cases: ## a table: what every hard case of contact did with every model and arithmetic
+	@tools/bootstrap build
+	@mkdir -p $(BUILD)
+	@$(CMAKE) -B $(RELEASE) -DCMAKE_BUILD_TYPE=Release -DPHANTOM_TESTS=ON \
+	  -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$(CURDIR)/$(BUILD)/bin >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
+	@cmake --build $(RELEASE) -j $(JOBS) --target hard_cases_table
+	@$(BUILD)/bin/hard_cases_table
+
 vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 	@tools/bootstrap vm
 	@mkdir -p $(BUILD)
