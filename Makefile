@@ -7,7 +7,7 @@ RELEASE := $(BUILD)/release
 JOBS    ?= $(shell nproc)
 CMAKE   := cmake -G Ninja -S userland
 
-.PHONY: help all demo test fuzz vm-test vm-debug modules install bench lint clean
+.PHONY: help all demo test hard-cases fuzz vm-test vm-debug modules install bench lint clean
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile

@@ -2,8 +2,8 @@
 // hard_cases_table: what every hard case did with every model and arithmetic.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <map>
 
 #include "random_cases.hpp"
@@ -14,10 +14,13 @@ namespace {
 using namespace phantom;
 using namespace phantom::hard;
 
-constexpr const char* usage = "usage: hard_cases_table [--markdown | --random SEED COUNT] [--case WORD]\n"
+constexpr const char* usage = "usage: hard_cases_table [--markdown | --random SEED COUNT | --case WORD]\n"
                               "  --markdown            the short table, one row for each kind of case\n"
                               "  --random SEED COUNT   random cases instead of the named ones\n"
                               "  --case WORD           only cases whose name contains WORD\n";
+
+/// Samples are so many times farther apart than in the case.
+constexpr double table_coarseness = 0.25;
 
 /// The figures of a row, as printed: rows that print alike are one.
 std::string figures(const Measured& m)
@@ -40,7 +43,7 @@ Measured run_all_proxies(const Course& course, const Case& hard, const phantom_f
 /// The rows of one case; returns how many promises were broken.
 unsigned print_case(const Case& hard)
 {
-    const Course course(hard, 0.25);
+    const Course course(hard, table_coarseness);
     unsigned faults = 0;
     fmt::print("{} / {}{}{}\n", title(hard.kind), hard.name, hard.outcome.empty() ? "" : ": ", hard.outcome);
     for (const Variant& variant : variants) {
@@ -68,6 +71,52 @@ unsigned print_case(const Case& hard)
     return faults;
 }
 
+/// What all cases of a kind did, for the short table.
+struct Summary {
+    unsigned cases = 0, refused = 0;
+    double excess = 0;
+    double promised = 0, elsewhere = 0; ///< step of `projected`, where one is promised and where not
+    double paper = 0;
+    std::uint64_t gaps = 0, doubles = 0, wrong = 0, not_numbers = 0;
+
+    void add(const Case& hard, const Variant& variant, const Measured& m)
+    {
+        excess = std::max(excess, hard.saturates ? 0 : m.excess);
+        not_numbers += m.not_numbers;
+        wrong += m.fallen;
+        refused = std::max(refused, m.refused);
+        if (variant.model == PHANTOM_MODEL_PAPER && variant.combine == PHANTOM_COMBINE_BOUNDED)
+            paper = std::max(paper, m.outside.step);
+        if (variant.model != PHANTOM_MODEL_PROJECTED || variant.newton_steps < exact_steps)
+            return;
+        double& step = hard.projected_step < measured ? promised : elsewhere;
+        step = std::max(step, m.outside.step);
+        gaps += m.gaps;
+        doubles += hard.once ? m.doubles : 0;
+    }
+};
+
+void print_markdown()
+{
+    std::map<Kind, Summary> kinds;
+    for (const Case& hard : corpus()) {
+        const Course course(hard, table_coarseness);
+        Summary& summary = kinds[hard.kind];
+        ++summary.cases;
+        for (const Variant& variant : variants)
+            for (const phantom_float_ops* ops : sections())
+                summary.add(hard, variant, run_all_proxies(course, hard, *ops, variant));
+    }
+    fmt::print(
+        "| | cases | \\|F\\| | step | else | `paper` | gaps | doubles | wrong side | no number | refused |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    const auto step = [](double kr) { return kr > 0 ? fmt::format("{:.3f}", kr) : std::string("–"); };
+    for (const auto& [kind, s] : kinds)
+        fmt::print("| {} | {} | {:.4f} | {} | {} | {} | {} | {} | {} | {} | {} |\n", title(kind), s.cases,
+                   s.excess, step(s.promised), step(s.elsewhere), step(s.paper), s.gaps, s.doubles, s.wrong,
+                   s.not_numbers, s.refused);
+}
+
 void print_head()
 {
     fmt::print(
@@ -87,6 +136,9 @@ int main(int argc, char** argv)
         if (!std::strcmp(argv[i], "--random") && i + 2 < argc) {
             seed = std::stoull(argv[++i]);
             count = std::stoull(argv[++i]);
+        } else if (!std::strcmp(argv[i], "--markdown")) {
+            print_markdown();
+            return 0;
         } else if (!std::strcmp(argv[i], "--case") && i + 1 < argc) {
             word = argv[++i];
         } else {
