@@ -199,6 +199,10 @@ void Section::check() const
     // saturated, a component is at the end of its range, and the force was larger
     must(norm(job_.force_un) <= most * (1 + relative_tolerance) * 1e6 + absolute_tolerance_un,
          "the force is larger than k (R + depth)");
+    for (const std::int32_t component : job_.force_un)
+        must(job_.saturated || (component != std::numeric_limits<std::int32_t>::max() &&
+                                component != std::numeric_limits<std::int32_t>::min()),
+             "a force at the end of its range is not counted as saturated");
     must(norm(job_.normal_q30) <= PHANTOM_Q30_ONE * (1 + relative_tolerance),
          "the contact's normal is longer than 1");
     if (!job_.contacts && !job_.inside)
