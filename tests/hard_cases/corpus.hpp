@@ -72,7 +72,8 @@ struct Case {
     bool continuous = false; ///< asked of `projected` though its step is not: how steep it is is not known
     /// Nearer than this to the front of a face there is contact, mm. 0: not asked.
     double near_mm = 0;
-    bool closed = false; ///< the tip is inside when it is behind the nearest face; valid - folded = 1 outside
+    bool closed = false; ///< the tip is inside when it is behind the nearest face
+    int surfaces = 1;    ///< closed ones: outside, valid - folded is their number
     bool convex = false; ///< a tip has one nearest point: a force above k (R - distance) is a double
     bool once = true;    ///< and there is none
     bool penetrates = false; ///< the path goes inside: run with either proxy

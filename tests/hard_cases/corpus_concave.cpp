@@ -148,6 +148,7 @@ std::vector<Case> narrow_places()
         within(Kind::narrow, "between two balls 1 mm apart", joined(ball, moved(ball, {7, 0, 0})), 2,
                {{{{3.05, 0.1, 0.1}, {3.5, 0, 0}, {3.95, 0.1, -0.1}}}, {{{3.5, 0, -2}, {3.4, 0.1, 2}}}}));
     out.back().near_mm = 1.4;
+    out.back().surfaces = 2;
     out.back().closed = true;
     out.back().projected_step = smooth_step;
     return out;
