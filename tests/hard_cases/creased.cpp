@@ -14,13 +14,20 @@ std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, 
     mesh::Soup soup;
     soup.vertices = shape.vertices;
     soup.faces = shape.faces;
+    return prepared(std::move(soup), 0, crease_deg, stiffness, radius, two_sided);
+}
+
+std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double crease_deg, double stiffness,
+                                          double radius, bool two_sided)
+{
     mesh::PrepareOptions options;
+    options.fit_mm = fit_mm;
     options.crease_deg = crease_deg;
     options.two_sided = two_sided;
-    const auto prepared = mesh::prepare(std::move(soup), options, "test");
-    if (!prepared)
-        throw std::invalid_argument(prepared.error().text());
-    const mesh::Mesh& mesh = prepared->mesh;
+    const auto done = mesh::prepare(std::move(soup), options, "test");
+    if (!done)
+        throw std::invalid_argument(done.error().text());
+    const mesh::Mesh& mesh = done->mesh;
     std::vector<reference::Triangle> out;
     const auto add_triangle = [&](const mesh::Triple& corners, const std::array<Vec3, 3>& normals, bool fan) {
         reference::Triangle t;
