@@ -7,7 +7,7 @@ RELEASE := $(BUILD)/release
 JOBS    ?= $(shell nproc)
 CMAKE   := cmake -G Ninja -S userland
 
-.PHONY: help all demo test fuzz vm-test vm-debug modules install bench lint clean
+.PHONY: help all demo test hard-cases fuzz vm-test vm-debug modules install bench lint clean
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -36,6 +36,14 @@ test: ## every test that needs no VM and no root, also under ASan and UBSan
 fuzz: ## arbitrary sets and paths through the border, with libFuzzer for SECONDS=600
 	@tools/bootstrap fuzz
 	@FUZZ_SECONDS=$(or $(SECONDS),600) tools/fuzz
+
+hard-cases: ## a table: what every hard case of contact did with every model and arithmetic
+	@tools/bootstrap build
+	@mkdir -p $(BUILD)
+	@$(CMAKE) -B $(RELEASE) -DCMAKE_BUILD_TYPE=Release -DPHANTOM_TESTS=ON \
+	  -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$(CURDIR)/$(BUILD)/bin >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
+	@cmake --build $(RELEASE) -j $(JOBS) --target hard_cases_table
+	@$(BUILD)/bin/hard_cases_table
 
 vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 	@tools/bootstrap vm

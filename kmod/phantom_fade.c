@@ -40,7 +40,8 @@ bool phantom_fade_begin(struct phantom_fade *fade, const s32 target_un[3], u64 n
 {
 	int axis;
 
-	if (!memcmp(fade->now_un, target_un, sizeof(fade->now_un)))
+	fade->active = memcmp(fade->now_un, target_un, sizeof(fade->now_un)) != 0;
+	if (!fade->active)
 		return false;
 	fade->part = phantom_fade_part(fade->now_un, target_un);
 	for (axis = 0; axis < 3; axis++)
@@ -48,7 +49,6 @@ bool phantom_fade_begin(struct phantom_fade *fade, const s32 target_un[3], u64 n
 			fade->now_un[axis] - target_un[axis] * fade->part / PHANTOM_FADE_ONE;
 	fade->begin_ns = now_ns;
 	fade->length_ns = length_ns;
-	fade->active = true;
 	return true;
 }
 

@@ -153,23 +153,6 @@ void phantom_servo_forget_touch(struct phantom_servo *servo)
 	servo->touch.proxy_face = PHANTOM_PATCH_NONE;
 }
 
-/* Another shape is no mere swap, nor is a scene that became empty here. */
-static void phantom_servo_compare(struct phantom_servo *servo, const struct phantom_slot *before,
-				  const struct phantom_slot *slot, struct phantom_pass *pass)
-{
-	struct phantom_touch *touch = &servo->touch;
-	/* along the normal it is somewhat farther than to the nearest point */
-	u64 apart = 2 * ((u64)before->level_error_nm + slot->level_error_nm) + PHANTOM_CARRY_NM;
-
-	if (phantom_set_reshaped(before, slot)) {
-		pass->blend_ns = servo->crossfade_ns;
-		touch->carry_nm =
-			max_t(u32, touch->carry_nm, min_t(u64, apart, PHANTOM_COVERAGE_MAX_NM));
-	}
-	if (before->patch_count && !slot->patch_count)
-		pass->blend_ns = PHANTOM_FADE_NS;
-}
-
 static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_pass *pass)
 {
 	struct phantom_slot *before = servo->active;
@@ -179,8 +162,13 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 	if (!slot)
 		return;
 	if (before) {
-		phantom_servo_compare(servo, before, slot, pass);
-		phantom_set_release(before);
+		/* a scene that became empty here is no mere swap */
+		if (before->patch_count && !slot->patch_count)
+			pass->blend_ns = PHANTOM_FADE_NS;
+		if (phantom_set_reshaped(before, slot))
+			pass->outgoing = before; /* phantom_servo_depart() releases it */
+		else
+			phantom_set_release(before);
 	}
 	servo->active = slot;
 	servo->warned = false;
@@ -250,12 +238,13 @@ static bool phantom_servo_lift(struct phantom_servo *servo, u64 lift_nm)
 }
 
 /*
- * CHANGE OF GEOMETRY. The surface that the tip touched, or that the proxy lies on, is another one
- * now, a little beside the old. The tick is told that the tip comes from outside, along the normal
- * of the old contact: if the new surface stands between, the proxy is where that path crosses it.
- * First from as far as the two may differ; if nothing at all is felt then, from a contact radius
- * farther: it may have risen over the tip. (Not at once: in a narrow slot that start lies behind
- * another wall.)
+ * CHANGE OF GEOMETRY. The surface that the tip touches, or that the proxy lies on, is another one
+ * now, a little beside the old. phantom_servo_depart() ends with the old: the tick as it would have
+ * been is what the crossfade begins with. Then the new one's tick is told that the tip comes from
+ * outside, along the normal of the old contact: if the new surface stands between, the proxy is
+ * where that path crosses it. First from as far as the two may differ; if nothing at all is felt
+ * then, from a contact radius farther: it may have risen over the tip. (Not at once: in a narrow
+ * slot that start lies behind another wall.)
  */
 static void phantom_servo_carry(struct phantom_servo *servo)
 {
@@ -318,6 +307,41 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 	}
 }
 
+/* Evaluates contact where it is covered, and remembers where that was. */
+static void phantom_servo_feel(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	struct phantom_touch *touch = &servo->touch;
+
+	phantom_servo_evaluate(servo, pass);
+	memcpy(touch->previous_nm, pass->tip_nm, sizeof(touch->previous_nm));
+	touch->evaluated_ns = pass->now_ns;
+	touch->valid = true;
+}
+
+/* A last tick on the set that goes, nothing of which is sent. */
+static void phantom_servo_depart(struct phantom_servo *servo, struct phantom_pass *pass)
+{
+	struct phantom_touch *touch = &servo->touch;
+	struct phantom_slot *slot = servo->active, *outgoing = pass->outgoing;
+	/* along the normal it is somewhat farther than to the nearest point */
+	u64 apart = 2 * ((u64)outgoing->level_error_nm + slot->level_error_nm) + PHANTOM_CARRY_NM;
+	s32 unsent_un[3];
+
+	servo->active = outgoing;
+	if (servo->reached && phantom_servo_place(servo, pass)) {
+		phantom_servo_feel(servo, pass);
+		phantom_fade_blend(&servo->fade, pass->target_un, pass->now_ns, unsent_un);
+		memset(pass->target_un, 0, sizeof(pass->target_un));
+		memset(pass->normal_q30, 0, sizeof(pass->normal_q30));
+		pass->contacts = 0;
+	}
+	servo->active = slot;
+	touch->carry_nm = max_t(u32, touch->carry_nm, min_t(u64, apart, PHANTOM_COVERAGE_MAX_NM));
+	if (!pass->blend_ns)
+		pass->blend_ns = servo->crossfade_ns;
+	phantom_set_release(outgoing);
+}
+
 /* The force that contact asks for at the pass's tip, or zero where nothing is promised. */
 static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pass *pass)
 {
@@ -325,6 +349,8 @@ static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pa
 	bool off = servo->job.model.model == PHANTOM_MODEL_OFF;
 	bool reached;
 
+	if (pass->outgoing)
+		phantom_servo_depart(servo, pass);
 	if (!phantom_servo_place(servo, pass))
 		pass->flags |= PHANTOM_TICK_UNCOVERED;
 	if (servo->active && pass->now_ns - servo->stats.next.set_time_ns > servo->stale_ns)
@@ -332,10 +358,7 @@ static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pa
 	reached = !(pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) && !off &&
 		  !servo->safety.overloaded;
 	if (reached) {
-		phantom_servo_evaluate(servo, pass);
-		memcpy(touch->previous_nm, pass->tip_nm, sizeof(touch->previous_nm));
-		touch->evaluated_ns = pass->now_ns;
-		touch->valid = true;
+		phantom_servo_feel(servo, pass);
 	} else if (touch->valid && pass->now_ns - touch->evaluated_ns > PHANTOM_MEMORY_NS) {
 		phantom_servo_forget_touch(servo);
 	}

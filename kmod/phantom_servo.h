@@ -68,6 +68,7 @@ struct phantom_pass {
 	u32 contacts;
 	u32 flags; /* PHANTOM_TICK_... */
 	u64 blend_ns; /* something changed that needs a fade of that length; 0 = nothing */
+	struct phantom_slot *outgoing; /* the set before, of another geometry; else NULL */
 };
 
 struct phantom_servo {

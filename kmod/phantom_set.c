@@ -208,7 +208,8 @@ bool phantom_set_relative(const struct phantom_slot *slot, const s64 position_nm
 		/* Both are within PHANTOM_POSITION_MAX_NM: the difference cannot overflow. */
 		s64 difference = position_nm[axis] - slot->origin_nm[axis];
 
-		relative_nm[axis] = clamp_t(s64, difference, S32_MIN, S32_MAX);
+		relative_nm[axis] =
+			clamp_t(s64, difference, -PHANTOM_RELATIVE_MAX_NM, PHANTOM_RELATIVE_MAX_NM);
 		fits &= relative_nm[axis] == difference;
 	}
 	return fits;

@@ -29,6 +29,12 @@
 /* Coverage farther than this counts as this far: keeps the squares in u64 (3 * 2e9^2 < 2^64). */
 #define PHANTOM_COVERAGE_MAX_NM 2000000000U
 
+/*
+ * Positions farther from a set's origin along an axis do not fit: the distance to a vertex, which the
+ * float sections form in s32, does not either.
+ */
+#define PHANTOM_RELATIVE_MAX_NM (S32_MAX - PHANTOM_COORDINATE_MAX_NM)
+
 struct phantom_slot {
 	u32 holder; /* PHANTOM_SLOT_FREE or _HELD, release/acquire */
 	/* What follows is the holder's. */

@@ -36,7 +36,8 @@ using Memory = std::unique_ptr<void, Free>;
 /// What bounds the force of a set, in N and mm.
 struct Bounds {
     double stiffness = 0, radius = 0, damping = 0, product = 0;
-    double rounding = 0; ///< rounding_mm() of the set, or more
+    double rounding = 0;       ///< rounding_mm() of the set, or more
+    Point least{}, greatest{}; ///< of the vertices and the origin, nm
 
     Bounds() = default;
     Bounds(const phantom_material* materials, std::uint32_t count, const phantom_patch* patches,
@@ -48,6 +49,14 @@ struct Bounds {
             radius = std::max(radius, r);
             product = std::max(product, k * r);
             damping = std::max(damping, materials[i].damping_mns_m * 1e-6);
+        }
+        for (std::uint32_t f = 0; f < patch_count; ++f) {
+            for (const auto& vertex : patches[f].vertex_nm) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    least[axis] = std::min<std::int64_t>(least[axis], vertex[axis]);
+                    greatest[axis] = std::max<std::int64_t>(greatest[axis], vertex[axis]);
+                }
+            }
         }
         double longest = 0;
         for (std::uint32_t f = 0; f < patch_count; ++f)
@@ -157,6 +166,11 @@ bool Section::tick(const Point& tip, const phantom_model& model, const std::int3
     job_.effects = effects_;
     std::copy_n(velocity_nm_s, 3, job_.velocity_nm_s);
     std::copy_n(border_.centre_nm, 3, job_.centre_nm);
+    constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        must(job_.tip_nm[axis] - bounds_.least[axis] <= most &&
+                 bounds_.greatest[axis] - job_.tip_nm[axis] <= most,
+             "a tip that counts as covered is so far from a vertex that the difference wraps");
     job_.radius_nm = border_.radius_nm;
     unsigned sections = 1;
     while (ops_->tick(&job_))
@@ -185,6 +199,10 @@ void Section::check() const
     // saturated, a component is at the end of its range, and the force was larger
     must(norm(job_.force_un) <= most * (1 + relative_tolerance) * 1e6 + absolute_tolerance_un,
          "the force is larger than k (R + depth)");
+    for (const std::int32_t component : job_.force_un)
+        must(job_.saturated || (component != std::numeric_limits<std::int32_t>::max() &&
+                                component != std::numeric_limits<std::int32_t>::min()),
+             "a force at the end of its range is not counted as saturated");
     must(norm(job_.normal_q30) <= PHANTOM_Q30_ONE * (1 + relative_tolerance),
          "the contact's normal is longer than 1");
     if (!job_.contacts && !job_.inside)

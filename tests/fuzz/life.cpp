@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The whole module: what a feeder can do to a device in a life, and what must hold of each record.
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <deque>
 #include <fcntl.h>
-#include <vector>
+#include <span>
 
 #include "finding.hpp"
 #include "phantom_usermode.h"
@@ -62,12 +63,11 @@ class Machine {
     }
     [[nodiscard]] phantom_um* raw() const { return machine_.get(); }
     [[nodiscard]] const phantom_status& page() const { return *page_; }
-    std::vector<phantom_tick> read()
+    /// As many records as there are and fit: how many.
+    std::size_t read(std::span<phantom_tick> records)
     {
-        std::vector<phantom_tick> records(256);
-        const ssize_t bytes = phantom_um_read(file_, records.data(), records.size() * sizeof(phantom_tick));
-        records.resize(bytes > 0 ? std::size_t(bytes) / sizeof(phantom_tick) : 0);
-        return records;
+        const ssize_t bytes = phantom_um_read(file_, records.data(), records.size_bytes());
+        return bytes > 0 ? std::size_t(bytes) / sizeof(phantom_tick) : 0;
     }
 
   private:
@@ -99,6 +99,7 @@ class Life final : public Subject {
     void check(const phantom_tick& record);
 
     std::deque<Machine> machines_;
+    std::array<phantom_tick, 32> records_, others_; ///< of read(); too large to clear each time
     phantom_start start_{};
     std::uint64_t last_id_ = 0, last_time_ns_ = 0;
     std::uint32_t fail_allocation_ = 0;
@@ -277,20 +278,16 @@ void Life::control(Control what, std::uint32_t value)
 
 void Life::read()
 {
-    for (;;) {
-        const std::vector<phantom_tick> records = machines_.front().read();
-        for (std::size_t i = 1; i < machines_.size(); ++i) {
-            const std::vector<phantom_tick> others = machines_[i].read();
-            must(records.size() == others.size() &&
-                     (records.empty() ||
-                      std::memcmp(records.data(), others.data(), records.size() * sizeof(phantom_tick)) == 0),
+    std::size_t count = 0;
+    do {
+        count = machines_.front().read(records_);
+        for (std::size_t i = 1; i < machines_.size(); ++i)
+            must(machines_[i].read(others_) == count &&
+                     std::memcmp(records_.data(), others_.data(), count * sizeof(phantom_tick)) == 0,
                  "two instruction sets leave different records of the same life");
-        }
-        for (const phantom_tick& record : records)
-            check(record);
-        if (records.empty())
-            break;
-    }
+        for (std::size_t i = 0; i < count; ++i)
+            check(records_[i]);
+    } while (count == records_.size());
     must((machines_.front().page().sequence & 1) == 0, "the status page is left half written");
 }
 

@@ -264,6 +264,17 @@ void add_lives(std::vector<Seed>& to)
         .jump(1000000000, 1000000000, -1)
         .jump(0, 0, -1000000000);
     to.push_back({"limits-of-the-integers", w});
+
+    // behind a slope, its nearest point on the face and three metres from a corner
+    for (const std::uint32_t proxy : {PHANTOM_PROXY_PAPER, PHANTOM_PROXY_CONSTRAINED}) {
+        w = {};
+        w.byte(0).model(PHANTOM_MODEL_PROJECTED, 2, 1, proxy).operation(Operation::Ruler).byte(6);
+        w.material(80, 160, 0).shape(Writer::Triangle).byte(Writer::Plane);
+        w.point(-1000, -1000, 1000).point(-1000, 1000, 1000).point(1000, 0, -1000);
+        w.operation(Operation::Cover).point(1000, 0, 0).steps(1000).submit();
+        w.touch(0, 21, 10).touch(0, 21, -10).jump(2147483647, 0, 500000000).jump(2147483647, 1000, 499000000);
+        to.push_back({"three-metres-from-a-corner-" + std::to_string(proxy), w});
+    }
 }
 
 } // namespace

@@ -88,7 +88,9 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
         }
         const auto& x = triangles[f].corner;
         const bool corner = x[0] == x[1] && x[1] == x[2];
-        patches[f].face = triangles[f].fan ? PHANTOM_PATCH_NONE : f;
+        patches[f].face = triangles[f].fan                          ? PHANTOM_PATCH_NONE
+                          : triangles[f].face != PHANTOM_PATCH_NONE ? triangles[f].face
+                                                                    : f;
         patches[f].kind = !triangles[f].fan ? PHANTOM_PATCH_FACE
                           : corner          ? PHANTOM_PATCH_CORNER
                                             : PHANTOM_PATCH_EDGE;

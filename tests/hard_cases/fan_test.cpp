@@ -5,49 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "contact.hpp"
-#include "mesh/fans.hpp"
-#include "mesh/prepare.hpp"
+#include "creased.hpp"
 #include "shapes_of_interest.hpp"
 
 namespace {
 
 using namespace phantom;
 using namespace phantom::hard;
-
-/// Faces, then the fans of their creases.
-std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, double stiffness,
-                                         double radius, bool two_sided = false)
-{
-    mesh::Soup soup;
-    soup.vertices = shape.vertices;
-    soup.faces = shape.faces;
-    mesh::PrepareOptions options;
-    options.crease_deg = crease_deg;
-    options.two_sided = two_sided;
-    const auto prepared = mesh::prepare(std::move(soup), options, "test");
-    EXPECT_TRUE(prepared.ok());
-    const mesh::Mesh& mesh = prepared->mesh;
-    std::vector<reference::Triangle> out;
-    const auto add_triangle = [&](const mesh::Triple& corners, const std::array<Vec3, 3>& normals, bool fan) {
-        reference::Triangle t;
-        for (std::size_t i = 0; i < 3; ++i) {
-            t.corner[i] = on_grid(mesh.vertices[corners[i]]);
-            t.normal[i] = on_unit_grid(normals[i]);
-            t.vertex[i] = corners[i];
-        }
-        t.stiffness = stiffness;
-        t.radius = radius;
-        t.fan = fan;
-        out.push_back(t);
-    };
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-        const auto& n = mesh.face_normals[f];
-        add_triangle(mesh.faces[f], {mesh.normals[n[0]], mesh.normals[n[1]], mesh.normals[n[2]]}, false);
-    }
-    for (const mesh::Fan& fan : mesh::make_fans(mesh).fans)
-        add_triangle(fan.corners, fan.normals, true);
-    return out;
-}
 
 constexpr Vec3 half{5, 4, 3};
 

@@ -17,6 +17,7 @@ struct Triangle {
     std::array<Vec3, 3> corner; ///< counter-clockwise seen from outside
     std::array<Vec3, 3> normal; ///< unit, per corner
     std::array<std::uint32_t, 3> vertex{};
+    std::uint32_t face = 0xffffffffU; ///< its number in every set; by default its place in the list
     bool fan = false;     ///< over an edge or a corner: two or three of the corners are the same point
     double stiffness = 1; ///< k
     double radius = 1;    ///< R

@@ -77,16 +77,6 @@ TEST(Reference, ProjectedInTheShell)
     }
 }
 
-TEST(Reference, TheBunnyInTheShell)
-{
-    const Shape bunny = hard::bunny(120);
-    if (bunny.faces.empty())
-        GTEST_SKIP() << "glmark2-data is not installed";
-    const Named shape{"bunny", bunny.triangles(1, 1), 1};
-    expect_shell_agrees(shape, {reference::Model::paper}, 60);
-    expect_shell_agrees(shape, {reference::Model::projected}, 60);
-}
-
 /// A path that comes down on the mesh, slides 1 mm under the surface and leaves again.
 std::vector<Vec3> dive(const Named& shape, std::mt19937& random, unsigned ticks)
 {

@@ -180,6 +180,24 @@ TEST_F(Servo, FarFromTheOriginNothingChanges)
     EXPECT_EQ(feeder.status().proxy_nm[0] / 1'000'000, far[0] / 1'000'000);
 }
 
+TEST_F(Servo, FartherFromTheOriginThanTheBorderReachesIsUncovered)
+{
+    constexpr std::int64_t farthest = INT32_MAX - PHANTOM_COORDINATE_MAX_NM;
+    File feeder(machine);
+    Plane plane(1, 1'000'000'000, 2'000'000'000);
+    feeder.submit(plane);
+    ASSERT_EQ(feeder.start_unlimited(), 0);
+    for (const std::int64_t sign : {-1, 1}) {
+        feeder.move(sign * farthest, 0, 1'000'000);
+        step();
+        EXPECT_FALSE(feeder.status().flags & PHANTOM_TICK_UNCOVERED);
+        // a vertex on the other side would be nearer by 2^32 nm
+        feeder.move(sign * (farthest + 1), 0, 1'000'000);
+        step();
+        EXPECT_TRUE(feeder.status().flags & PHANTOM_TICK_UNCOVERED);
+    }
+}
+
 // ---- swaps
 
 TEST_F(Servo, SwapInContactKeepsTheForce)

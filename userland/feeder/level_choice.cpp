@@ -38,7 +38,18 @@ std::size_t LevelChoice::choose(const LevelDemand& demand)
         return number;
     };
     const std::size_t enough = first(needed), ample = first(finer_margin * needed);
-    current_ = std::clamp(current_, enough, ample);
+    if (enough > current_) {
+        current_ = enough;
+        finer_for_ = 0;
+    } else if (ample >= current_) {
+        finer_for_ = 0;
+    } else {
+        finer_ = finer_for_++ ? std::max(finer_, ample) : ample;
+        if (finer_for_ == finer_sets) {
+            current_ = finer_;
+            finer_for_ = 0;
+        }
+    }
     return current_;
 }
 

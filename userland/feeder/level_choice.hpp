@@ -50,10 +50,13 @@ class LevelChoice {
     /// A finer level is taken only where it would do for a demand that much larger: a tip whose speed wavers
     /// stays on one level.
     static constexpr double finer_margin = 1.25;
+    /// And only after as many sets in a row: a hand that turns round stands still for a moment.
+    static constexpr unsigned finer_sets = 8;
 
     /// Finest first, at least one; reach grows.
     explicit LevelChoice(std::vector<DetailLevel> levels);
-    /// The number of the level for the next set; the coarsest if none reaches far enough.
+    /// The number of the level for the next set; the coarsest if none reaches far enough. The finest for the
+    /// first one, if it does.
     std::size_t choose(const LevelDemand& demand);
     [[nodiscard]] std::size_t current() const { return current_; }
     [[nodiscard]] const DetailLevel& level(std::size_t number) const { return levels_[number]; }
@@ -61,6 +64,8 @@ class LevelChoice {
   private:
     std::vector<DetailLevel> levels_;
     std::size_t current_ = 0;
+    std::size_t finer_ = 0;  ///< the level that would have done for all of the last sets,
+    unsigned finer_for_ = 0; ///< as many as these
 };
 
 /// How far round a point of the surface the `budget` nearest triangles are all there are: what 99 of 100

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "scene/scene.hpp"
+
 namespace {
 
 using namespace phantom;
@@ -39,7 +41,6 @@ TEST(LevelChoice, OfADemandThatNoneMeetsIsTheCoarsest)
 {
     LevelChoice choice = chain();
     EXPECT_EQ(choice.choose(at_speed(1e6)), 3U);
-    EXPECT_EQ(choice.choose(at_speed(0)), 0U);
 }
 
 TEST(LevelChoice, CoarsensAtOnceAndRefinesWithAMargin)
@@ -49,8 +50,29 @@ TEST(LevelChoice, CoarsensAtOnceAndRefinesWithAMargin)
     EXPECT_EQ(choice.choose(at_speed(just_coarse)), 2U);
     for (int i = 0; i < 100; ++i) // wavers round the limit: stays
         EXPECT_EQ(choice.choose(at_speed(just_coarse * (i % 2 ? 0.95 : 1.0))), 2U);
+    for (unsigned i = 1; i < LevelChoice::finer_sets; ++i)
+        EXPECT_EQ(choice.choose(at_speed(just_coarse * 0.7)), 2U) << "not yet";
     EXPECT_EQ(choice.choose(at_speed(just_coarse * 0.7)), 1U);
     EXPECT_EQ(choice.choose(at_speed(just_coarse * 0.95)), 1U);
+}
+
+TEST(LevelChoice, OfAHandThatTurnsRoundStaysCoarse)
+{
+    LevelChoice choice = chain();
+    for (int tick = -100; tick <= 100; ++tick)
+        EXPECT_EQ(choice.choose(at_speed(std::abs(tick) < 3 ? 0.0 : 200.0)), 3U) << tick;
+}
+
+TEST(LevelChoice, RefinesToWhatWouldHaveDoneAllTheTime)
+{
+    LevelChoice choice = chain();
+    EXPECT_EQ(choice.choose(at_speed(200)), 3U);
+    for (unsigned i = 1; i < LevelChoice::finer_sets; ++i)
+        choice.choose(at_speed(i == 3 ? 40 : 0));
+    EXPECT_EQ(choice.choose(at_speed(0)), 1U); // 0.8 mm at 40 mm/s
+    for (unsigned i = 0; i < LevelChoice::finer_sets; ++i)
+        choice.choose(at_speed(0));
+    EXPECT_EQ(choice.current(), 0U);
 }
 
 /// What the formula promises, against the ball of a set: tip and a proxy as fast, on a flat surface.

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Meshes whose sharp edges keep the normals of their faces, with the fans that fill the gaps between them.
+#pragma once
+
+#include "mesh/mesh.hpp"
+#include "meshes.hpp"
+
+namespace phantom::hard {
+
+/// Faces, then the fans of their creases: what the user side's preparation makes of the shape.
+std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, double stiffness,
+                                         double radius, bool two_sided = false);
+
+/// The same of vertices and faces as a file gives them, scaled to `fit_mm` along the longest side (0: as it
+/// is). Throws std::invalid_argument where nothing is left of it.
+std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double crease_deg, double stiffness,
+                                          double radius, bool two_sided = false);
+
+} // namespace phantom::hard
