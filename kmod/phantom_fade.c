@@ -35,11 +35,19 @@ static s64 phantom_fade_part(const s32 from_un[3], const s32 target_un[3])
 	return along * PHANTOM_FADE_ONE / square;
 }
 
+static bool phantom_fade_zero(const s32 force_un[3])
+{
+	return !force_un[0] && !force_un[1] && !force_un[2];
+}
+
 bool phantom_fade_begin(struct phantom_fade *fade, const s32 target_un[3], u64 now_ns,
 			u64 length_ns)
 {
 	int axis;
 
+	if (fade->active && fade->to_zero && phantom_fade_zero(target_un) &&
+	    fade->begin_ns + fade->length_ns <= now_ns + length_ns)
+		return false;
 	fade->active = memcmp(fade->now_un, target_un, sizeof(fade->now_un)) != 0;
 	if (!fade->active)
 		return false;
@@ -69,6 +77,7 @@ bool phantom_fade_blend(struct phantom_fade *fade, const s32 target_un[3], u64 n
 
 		fade->now_un[axis] = clamp_t(s64, force / PHANTOM_FADE_ONE, -S32_MAX, S32_MAX);
 	}
+	fade->to_zero = phantom_fade_zero(target_un);
 	memcpy(force_un, fade->now_un, sizeof(fade->now_un));
 	return fade->active;
 }

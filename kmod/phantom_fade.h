@@ -15,7 +15,8 @@
  * |rest| <= |from|, so |F| <= |T| + |from| s.
  *
  * At the begin F is `from`, and a fade begun while another runs starts from where that one is: the
- * output never steps.
+ * output never steps. A fade-out that would not end later than the new one goes on instead: however
+ * many reasons there are one after the other, the force is gone in the time of one.
  */
 #ifndef PHANTOM_FADE_H
 #define PHANTOM_FADE_H
@@ -34,6 +35,7 @@ struct phantom_fade {
 	u64 begin_ns;
 	u64 length_ns;
 	bool active;
+	bool to_zero; /* the last blend's target was zero */
 };
 
 /* No fade, force zero. */

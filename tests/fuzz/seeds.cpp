@@ -184,26 +184,27 @@ struct Seed {
     Writer script;
 };
 
-/// Each scene under both models and all proxies.
+/// A scene under one model; the rest of it goes round.
+Seed touched(const Scene& scene, bool life, std::uint32_t model, std::uint32_t proxy, std::uint32_t round)
+{
+    Writer w;
+    w.byte(life ? 0x11 : 0).model(model, round % 4, round / 2 % 2, proxy);
+    scene.build(w);
+    w.submit().tour(scene.faces);
+    const std::string to = life ? "-life" : proxy == PHANTOM_PROXY_PAPER ? "-proxy-paper" : "-constrained";
+    return {std::string(scene.name) + (model == PHANTOM_MODEL_PAPER ? "-paper" : "-projected") + to, w};
+}
+
+/// Each scene under both models and both proxies, and once as a life, which costs two machines.
 void add_scenes(std::vector<Seed>& to)
 {
     std::uint32_t round = 0;
     for (const Scene& scene : scenes()) {
-        for (const std::uint32_t model : {PHANTOM_MODEL_PAPER, PHANTOM_MODEL_PROJECTED}) {
-            for (const bool life : {false, true}) {
-                ++round;
-                Writer w;
-                w.byte(life ? 0x11 : 0);
-                w.model(model, round % 4, round / 4 % 2,
-                        life ? PHANTOM_PROXY_PAPER : PHANTOM_PROXY_CONSTRAINED);
-                scene.build(w);
-                w.submit().tour(scene.faces);
-                to.push_back({std::string(scene.name) +
-                                  (model == PHANTOM_MODEL_PAPER ? "-paper" : "-projected") +
-                                  (life ? "-life" : ""),
-                              w});
-            }
-        }
+        for (const std::uint32_t model : {PHANTOM_MODEL_PAPER, PHANTOM_MODEL_PROJECTED})
+            for (const std::uint32_t proxy : {PHANTOM_PROXY_PAPER, PHANTOM_PROXY_CONSTRAINED})
+                to.push_back(touched(scene, false, model, proxy, ++round));
+        ++round;
+        to.push_back(touched(scene, true, PHANTOM_MODEL_PAPER + round % 2, PHANTOM_PROXY_CONSTRAINED, round));
     }
 }
 
@@ -264,6 +265,21 @@ void add_lives(std::vector<Seed>& to)
         .jump(1000000000, 1000000000, -1)
         .jump(0, 0, -1000000000);
     to.push_back({"limits-of-the-integers", w});
+
+    // the stiffest material there is
+    w = {};
+    w.byte(0).material(255, 170, 0).grid(2, 4000, Writer::Plane).submit().tour(8);
+    to.push_back({"forces-that-saturate", w});
+
+    // rounding is a micrometre on a patch of a metre, and normals that graze it make it much more
+    w = {};
+    w.byte(0).model(PHANTOM_MODEL_PROJECTED, 3, 1, PHANTOM_PROXY_OFF).operation(Operation::Ruler).byte(6);
+    w.material(80, 160, 0).shape(Writer::Triangle).byte(Writer::Any);
+    w.point(-500, -500, 0).point(500, -500, 0).point(0, 500, 0);
+    w.byte(126).byte(0).byte(126).byte(0).byte(126).byte(0).submit();
+    for (const int nm : {100, 10, 1, 0, -1, -10, -100, -127})
+        w.touch(0, 21, 0, 1, nm);
+    to.push_back({"just-below-a-grazed-face", w});
 
     // behind a slope, its nearest point on the face and three metres from a corner
     for (const std::uint32_t proxy : {PHANTOM_PROXY_PAPER, PHANTOM_PROXY_CONSTRAINED}) {

@@ -72,15 +72,17 @@ struct Case {
     bool continuous = false; ///< asked of `projected` though its step is not: how steep it is is not known
     /// Nearer than this to the front of a face there is contact, mm. 0: not asked.
     double near_mm = 0;
-    bool closed = false; ///< the tip is inside when it is behind the nearest face
-    int surfaces = 1;    ///< closed ones: outside, valid - folded is their number
-    bool convex = false; ///< a tip has one nearest point: a force above k (R - distance) is a double
-    bool once = true;    ///< and there is none
+    bool closed = false;     ///< the tip is inside when it is behind the nearest face
+    int surfaces = 1;        ///< closed ones: outside, valid - folded is their number
+    bool convex = false;     ///< a tip has one nearest point: a force above k (R - distance) is a double
+    bool once = true;        ///< and there is none
     bool penetrates = false; ///< the path goes inside: run with either proxy
     unsigned refused = 0;    ///< faces that cannot be computed
     bool saturates = false;  ///< forces beyond the border's integers
     bool rigid = true;       ///< may be turned: its detail is far above the nm grid that corners lie on
     std::string outcome{};   ///< what a user must know, where that is not plain
+    std::string
+        fault{}; ///< known and not yet mended: asked for numbers that do not wrap, the table has the rest
 };
 
 /// All of them, in the order of their kinds.

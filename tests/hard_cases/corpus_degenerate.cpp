@@ -61,7 +61,8 @@ Case into_sliver(double aspect)
                {{{1, y, 1.2}, {1, y, 0}, {1, y, -0.4}}, 0.02, c.refused ? End::any : End::inside}};
     if (c.refused) {
         c.paper_step = c.projected_step = measured;
-        c.outcome = "less than 16 nm high, it leaves a slit: a tip that goes exactly there is not held";
+        c.fault = "less than 16 nm high, it is refused and leaves a slit: a tip that goes exactly there is "
+                  "not held";
     }
     return c;
 }

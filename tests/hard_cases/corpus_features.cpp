@@ -128,6 +128,24 @@ std::vector<Case> tips()
     return out;
 }
 
+/// A fan over an edge of 10 mm, the tip some um over its end. It came out of a random case.
+Case low_over_an_edges_end()
+{
+    reference::Triangle t;
+    t.fan = true;
+    const Vec3 tip{9.442468, 5.700386, 0.666553}, end = add(tip, {-0.002358, 0.002094, -0.004057});
+    t.corner = {on_grid(add(tip, {-2.649051, -7.942621, 6.077554})), on_grid(end), on_grid(end)};
+    const Vec3 one{0.925931663, -0.019739658, 0.377174892};
+    t.normal = {on_unit_grid(one), on_unit_grid(one), on_unit_grid({0.745993796, 0.229916644, 0.625005276})};
+    t.vertex = {0, 1, 1};
+    t.radius = 0.14565;
+    Case c = over("fan over an edge of 10 mm, low over its end", {t}, 0.14565,
+                  {{{add(tip, {0, 0, -0.002}), tip, add(tip, {0.002, 0, 0.005})}}});
+    c.rigid = false; // it is as narrow as its height
+    c.fault = "float32 loses its root within 5 um of the vertex";
+    return c;
+}
+
 std::vector<Case> bodies()
 {
     std::vector<Case> out;
@@ -162,6 +180,7 @@ std::vector<Case> bodies()
                        {{{{3, 5, 9.5}, {-1, 4, 10.3}}}, {{{8, 6, 6}, {5, 3, 5}, {4, 4, 5}, {7, 6, 7}}}}));
     out.back().near_mm = 1;
     out.back().closed = out.back().penetrates = true;
+    out.push_back(low_over_an_edges_end());
     return out;
 }
 

@@ -283,12 +283,14 @@ std::vector<std::string> broken(const Case& hard, const phantom_float_ops& ops, 
     const auto at = [](const Vec3& p) { return fmt::format("{:.6f}", fmt::join(p, " ")); };
     if (m.not_numbers > 0)
         out.push_back(fmt::format("{} results were no number", m.not_numbers));
+    if (m.wrapped > 0)
+        out.push_back(fmt::format("{} forces wrapped", m.wrapped));
+    if (!hard.fault.empty())
+        return out;
     if (m.excess > 1 + rounding_of(ops, hard) && !hard.saturates)
         out.push_back(fmt::format("|F| is {:.6f} k (R + depth)", m.excess));
     if ((m.saturated > 0) != hard.saturates)
         out.push_back(fmt::format("{} forces saturated", m.saturated));
-    if (m.wrapped > 0)
-        out.push_back(fmt::format("{} forces wrapped", m.wrapped));
     // fixed point refuses small faces whose terms do not fit, too: the table counts them
     if (m.refused < hard.refused || (m.refused > hard.refused && ops.isa != PHANTOM_ISA_FIXED))
         out.push_back(fmt::format("{} faces refused, not {}", m.refused, hard.refused));

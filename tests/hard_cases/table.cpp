@@ -45,7 +45,8 @@ unsigned print_case(const Case& hard)
 {
     const Course course(hard, table_coarseness);
     unsigned faults = 0;
-    fmt::print("{} / {}{}{}\n", title(hard.kind), hard.name, hard.outcome.empty() ? "" : ": ", hard.outcome);
+    fmt::print("{} / {}{}{}{}{}\n", title(hard.kind), hard.name, hard.outcome.empty() ? "" : ": ",
+               hard.outcome, hard.fault.empty() ? "" : "\n  KNOWN FAULT: ", hard.fault);
     for (const Variant& variant : variants) {
         std::vector<std::pair<std::string, std::string>> rows; // figures, arithmetics
         std::vector<std::string> sentences;

@@ -137,6 +137,8 @@ Status Device::set_model(const phantom_model& model)
 Status Device::start(const phantom_start& start)
 {
     phantom_start copy = start;
+    if (start.crossfade_ms != 0 && (info_.features & PHANTOM_FEATURE_CROSSFADE) == 0)
+        return Error{name(), "cannot start: this module knows no crossfade but its own of 20 ms"};
     switch (const int rc = transport_->ioctl(PHANTOM_START, &copy); rc) {
     case -EBUSY:
         return Error{name(), "cannot start: the servo is running already"};

@@ -35,6 +35,7 @@ struct Options {
     std::string path, record, summary, node;
     double seconds = 0; ///< 0: until somebody stops it
     double feed_rate_hz = feeder::FeederOptions{}.rate_hz;
+    std::uint32_t crossfade_ms = 0; ///< 0: the scene's
     int cpu = -1;
 };
 
@@ -78,6 +79,7 @@ feeder::SessionOptions session_options(const Options& options, const feeder::Pat
     session.force_usermode = options.usermode;
     session.node = options.node;
     session.servo = options.servo.words;
+    session.start.crossfade_ms = options.crossfade_ms;
     session.cpu = options.cpu;
     if (!path.empty())
         session.start_tip_mm = path.front().tip_mm;
@@ -239,6 +241,11 @@ Run add_load(CLI::App& app)
         ->check(CLI::Range(20.0, 2000.0))
         ->type_name("HZ")
         ->capture_default_str();
+    app.add_option("--crossfade", options->crossfade_ms,
+                   "to another level of detail or revision of an object [20, or the scene's]")
+        ->check(CLI::Range(1, PHANTOM_RAMP_MAX_MS))
+        ->type_name("MS")
+        ->excludes(view);
     app.add_option("--cpu", options->cpu, "user mode: pin the servo's thread to this CPU")
         ->check(CLI::Range(0, 1023))
         ->type_name("N");

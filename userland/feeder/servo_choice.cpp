@@ -55,7 +55,8 @@ Result<std::uint32_t> choose_rate(const scene::ServoSettings& asked, const scene
     return static_cast<std::uint32_t>(std::lround(rate_hz));
 }
 
-phantom_start choose_start(const phantom_start& asked, const scene::DeviceSettings& scene)
+phantom_start choose_start(const phantom_start& asked, const scene::DeviceSettings& scene,
+                           const scene::ServoSettings& servo)
 {
     // A limit that rounds to zero would mean "the default": the smallest is one unit.
     const auto units = [](double value) {
@@ -68,6 +69,8 @@ phantom_start choose_start(const phantom_start& asked, const scene::DeviceSettin
         start.slew_un_per_ms = units(*scene.slew_n_per_ms * 1e6);
     if (start.ramp_ms == 0 && scene.ramp_ms)
         start.ramp_ms = units(*scene.ramp_ms);
+    if (start.crossfade_ms == 0 && servo.crossfade_ms)
+        start.crossfade_ms = units(*servo.crossfade_ms);
     return start;
 }
 

@@ -24,7 +24,8 @@ Result<phantom_model> change_model_words(const phantom_model& now, const scene::
 /// Fails outside PHANTOM_RATE_MIN_HZ ... PHANTOM_RATE_MAX_HZ.
 Result<std::uint32_t> choose_rate(const scene::ServoSettings& asked, const scene::ServoSettings& scene);
 
-/// The scene's [device] limits where `asked` has a zero.
-phantom_start choose_start(const phantom_start& asked, const scene::DeviceSettings& scene);
+/// The scene's [device] limits and [servo] crossfade where `asked` has a zero.
+phantom_start choose_start(const phantom_start& asked, const scene::DeviceSettings& scene,
+                           const scene::ServoSettings& servo);
 
 } // namespace phantom::feeder

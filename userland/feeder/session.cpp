@@ -154,7 +154,7 @@ struct Session::Impl {
 
     phantom_start start_request() const
     {
-        phantom_start start = choose_start(options.start, scene.device);
+        phantom_start start = choose_start(options.start, scene.device, scene.servo);
         if (!device->is_kernel() && start.stall_us == 0)
             start.stall_us = usermode_stall_us;
         return start;

@@ -27,8 +27,8 @@ struct SessionOptions {
     int cpu = -1;                         ///< user mode: pin the servo to that CPU
     /// Where the simulated tip begins; else above the scene, out of reach of its surface.
     std::optional<std::array<double, 3>> start_tip_mm{};
-    phantom_start start{};      ///< zero fields: the scene's [device], else the module's defaults
-    bool control_socket = true; ///< let `fdhctl status|rate|model|stop` reach us
+    phantom_start start{};                         ///< zero fields: the scene's, else the module's defaults
+    bool control_socket = true;                    ///< let `fdhctl status|rate|model|stop` reach us
     std::function<void(const std::string&)> say{}; ///< progress lines for a person, may be empty
 };
 

@@ -22,6 +22,7 @@ inline constexpr Range position_mm{-1e6, 1e6, "-1000000 ... 1000000 mm"};
 inline constexpr Range max_force_n{0.001, 1000.0, "0.001 ... 1000 N"};
 inline constexpr Range slew_n_per_ms{0.001, 1000.0, "0.001 ... 1000 N/ms"};
 inline constexpr Range ramp_ms{0.0, 10000.0, "0 ... 10000 ms"};
+inline constexpr Range crossfade_ms{1.0, 10000.0, "1 ... 10000 ms"};
 inline constexpr Range rate_hz{1000.0, 10000.0, "1000 ... 10000 Hz"};
 inline constexpr Range angle_deg{-36000.0, 36000.0, "-36000 ... 36000 degrees"};
 

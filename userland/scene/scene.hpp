@@ -45,6 +45,7 @@ struct ServoSettings {
     std::optional<double> rate_hz;
     std::optional<std::string> model, combine, proxy, arith; ///< words as on the command line
     std::optional<int> steps;
+    std::optional<double> crossfade_ms; ///< to another level of detail or revision
 };
 
 struct Scene {

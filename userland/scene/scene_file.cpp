@@ -244,13 +244,15 @@ void read_device(const toml::table& table, Faults& faults, DeviceSettings& out)
 
 void read_servo(const toml::table& table, Faults& faults, ServoSettings& out)
 {
-    TomlReader servo(table, "servo.", {"rate_hz", "model", "combine", "proxy", "arith", "steps"}, faults);
+    TomlReader servo(table, "servo.",
+                     {"rate_hz", "model", "combine", "proxy", "arith", "steps", "crossfade_ms"}, faults);
     out.rate_hz = servo.number("rate_hz", range::rate_hz);
     out.model = servo.word("model", model_words);
     out.combine = servo.word("combine", combine_words);
     out.proxy = servo.word("proxy", proxy_words);
     out.arith = servo.word("arith", arith_words);
     out.steps = servo.whole_number("steps", 0, newton_steps_max);
+    out.crossfade_ms = servo.number("crossfade_ms", range::crossfade_ms);
 }
 
 } // namespace

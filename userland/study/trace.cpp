@@ -94,7 +94,7 @@ class Tracer {
     {
         phantom_start start{};
         if (options_.limits) {
-            start = feeder::choose_start(start, scene_.device);
+            start = feeder::choose_start(start, scene_.device, scene_.servo);
         } else {
             start.flags = PHANTOM_START_LIMITS_OFF;
             start.stale_ms = never_stale_ms;

@@ -71,11 +71,16 @@ TEST(ServoChoice, TheScenesLimitsFillWhatIsNotAsked)
     scene.ramp_ms = 1e-9;
     phantom_start asked{};
     asked.slew_un_per_ms = 7;
-    const phantom_start start = feeder::choose_start(asked, scene);
+    scene::ServoSettings servo;
+    servo.crossfade_ms = 50;
+    const phantom_start start = feeder::choose_start(asked, scene, servo);
     EXPECT_EQ(start.max_force_un, 2500000U);
     EXPECT_EQ(start.slew_un_per_ms, 7U);
     // Nothing rounds to zero: that would ask for the default.
     EXPECT_EQ(start.ramp_ms, 1U);
+    EXPECT_EQ(start.crossfade_ms, 50U);
+    asked.crossfade_ms = 7;
+    EXPECT_EQ(feeder::choose_start(asked, scene, servo).crossfade_ms, 7U);
 }
 
 TEST(Histogram, PercentilesAreTheBucketsUpperEnds)

@@ -47,7 +47,7 @@ TEST(SceneFile, SoundFileLoads)
             "[material.soft]\nstiffness_n_mm = 0.5\nradius_mm = 2\ndamping_ns_m = 3\n"
             "[device]\nmax_force_n = 3.3\nslew_n_per_ms = 1\nramp_ms = 250\n"
             "[servo]\nrate_hz = 3000\nmodel = \"projected\"\ncombine = \"bounded\"\n"
-            "proxy = \"constrained\"\narith = \"float\"\nsteps = 2\n"),
+            "proxy = \"constrained\"\narith = \"float\"\nsteps = 2\ncrossfade_ms = 50\n"),
         "");
 }
 
@@ -65,7 +65,8 @@ TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
     EXPECT_EQ(below_object("[device]\nforce = 1\n"),
               "a.toml:5: device.force: unknown key, expected max_force_n, slew_n_per_ms, ramp_ms");
     EXPECT_EQ(below_object("[servo]\nrate = 1\n"),
-              "a.toml:5: servo.rate: unknown key, expected rate_hz, model, combine, proxy, arith, steps");
+              "a.toml:5: servo.rate: unknown key, expected rate_hz, model, combine, proxy, arith, steps, "
+              "crossfade_ms");
     EXPECT_EQ(in_object("pose = { translation = [0, 0, 0] }\n"),
               "a.toml:3: object 1: pose.translation: unknown key, expected translation_mm, axis, angle_deg, "
               "quaternion");
@@ -104,6 +105,8 @@ TEST(SceneFile, ValuesOutOfRange)
               "a.toml:5: material.soft.damping_ns_m: is -1, expected 0 ... 1000 N*s/m");
     EXPECT_EQ(below_object("[servo]\nrate_hz = 500\n"),
               "a.toml:5: servo.rate_hz: is 500, expected 1000 ... 10000 Hz");
+    EXPECT_EQ(below_object("[servo]\ncrossfade_ms = 0\n"),
+              "a.toml:5: servo.crossfade_ms: is 0, expected 1 ... 10000 ms");
     EXPECT_EQ(below_object("[servo]\nsteps = 4\n"),
               "a.toml:5: servo.steps: is 4, expected a whole number, 0 ... 3");
     EXPECT_EQ(below_object("[servo]\nmodel = \"penalty\"\n"),
