@@ -19,6 +19,8 @@ struct Triangle {
     std::array<std::uint32_t, 3> vertex{};
     std::uint32_t face = 0xffffffffU; ///< its number in every set; by default its place in the list
     bool fan = false;     ///< over an edge or a corner: two or three of the corners are the same point
+    bool rim = false;     ///< no triangle: the surface ends on the edge from corner 0 to 1; corner 2 = corner 1
+    std::uint32_t surface = 0; ///< whose force fades within R of rims with that number; 0: none's
     double stiffness = 1; ///< k
     double radius = 1;    ///< R
 };

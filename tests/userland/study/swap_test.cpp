@@ -48,9 +48,13 @@ class FloatSet {
         prepare.patches = set.patches.data();
         prepare.materials = set.materials.data();
         prepare.patch_count = header.patch_count;
-        prepare.face_count = static_cast<std::uint32_t>(
-            std::count_if(set.patches.begin(), set.patches.end(),
-                          [](const phantom_patch& patch) { return patch.kind == PHANTOM_PATCH_FACE; }));
+        const auto count = [&set](std::uint32_t kind) {
+            return static_cast<std::uint32_t>(
+                std::count_if(set.patches.begin(), set.patches.end(),
+                              [kind](const phantom_patch& patch) { return patch.kind == kind; }));
+        };
+        prepare.face_count = count(PHANTOM_PATCH_FACE);
+        prepare.rim_count = count(PHANTOM_PATCH_RIM);
         prepare.material_count = header.material_count;
         do {
             prepare.count =
