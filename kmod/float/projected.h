@@ -19,8 +19,9 @@
  *   S = sum s k (R - h|N|) n        F = S min(1, kR / |S|)
  *
  * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than MONOTONE_RATIO
- * fold (its Bernstein coefficients say so), there is one root or none, and Newton from -c0/c1
- * finds it in model.newton_steps steps: the accuracy knob. Elsewhere the interval is split at the
+ * fold (its Bernstein coefficients say so), there is one root or none, and from -c0/c1 it is
+ * found in model.newton_steps steps: the accuracy knob. They are Halley's, a Newton step with the
+ * curvature in it: an error of e becomes e^3, not e^2, for the same one division. Elsewhere the interval is split at the
  * critical points and each part that changes sign is solved by Newton kept in its bracket.
  *
  * Fans. Over an edge with two normals at an end, and over a vertex with three and more, the shell
@@ -203,6 +204,20 @@ LANES_INLINE struct cubic shell_cubic(const struct block *block, u32 step, struc
 	return c;
 }
 
+/* What Halley's method takes off h in the lanes of the mask: c c' / (c'^2 - c c''/2). */
+LANES_INLINE lanes cubic_correction(const struct cubic *c, lanes h, mask_lanes usual)
+{
+	lanes value = cubic_at(c, h);
+	lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(REAL(1)));
+	lanes square = mul(slope, slope);
+	lanes under = square - mul(value, mul(3 * c->c3, h) + c->c2);
+	/* bent too much for it: Newton's */
+	mask_lanes near = 4 * under > square;
+
+	return divide(mul(value, lanes_select(near, slope, lanes_all(REAL(1)))),
+		      lanes_select(near, under, slope));
+}
+
 /* Roots in [-rounding, H] of the candidate lanes. Returns the number of rounds in `roots`. */
 static inline u32 find_roots(const struct block *block, u32 step, const struct cubic *c,
 			     mask_lanes candidates, real rounding, u32 newton_steps,
@@ -225,11 +240,8 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 	h = lanes_min(
 		lanes_max(divide(-c->c0, lanes_select(usual, c->c1, lanes_all(REAL(1)))), low),
 		high);
-	for (i = 0; i < newton_steps; i++) {
-		lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(REAL(1)));
-
-		h = lanes_min(lanes_max(h - divide(cubic_at(c, h), slope), low), high);
-	}
+	for (i = 0; i < newton_steps; i++)
+		h = lanes_min(lanes_max(h - cubic_correction(c, h, usual), low), high);
 	roots->h[0] = h;
 	roots->sign[0] = lanes_select(falling, lanes_all(REAL(1)), lanes_all(REAL(-1)));
 	roots->valid[0] = usual & ((cubic_at(c, low) < zero) ^ (cubic_at(c, high) < zero));

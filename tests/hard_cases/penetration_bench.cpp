@@ -4,7 +4,7 @@
 //
 //     penetration_bench [--seconds S] [--sphere F] [--markdown]
 //
-// S seconds of each case, 20 by default (some four minutes in all); F: the one sphere to run, of frequency
+// S seconds of each case, 20 by default (some six minutes in all); F: the one sphere to run, of frequency
 // 32, 100 or 316.
 #include <algorithm>
 #include <array>
