@@ -21,7 +21,8 @@
 
 #include "combine.h"
 
-_Static_assert(sizeof(struct rim_block) <= sizeof(struct block), "section_set_bytes() counts on it");
+_Static_assert(sizeof(struct rim_block) <= sizeof(struct block),
+	       "section_set_bytes() counts on it");
 
 /* The square of the distance from the foot, at + way, to the nearest rim of that surface, mm^2. */
 LANES_NOINLINE real rim_distance2(const struct phantom_float_set *set, u32 surface,

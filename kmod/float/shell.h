@@ -345,8 +345,7 @@ static inline u32 shell_paper_add(const struct phantom_float_job *job, const str
 		fade = shell_fade(job, patch, lanes3_lane(at->normal, l), at->length[l]);
 		magnitude[l] = mul(magnitude[l], fade);
 		state->forces += magnitude[l];
-		state->damping +=
-			mul(mul(magnitude[l], shell_material(set, patch)->damping), fade);
+		state->damping += mul(mul(magnitude[l], shell_material(set, patch)->damping), fade);
 		spent += shell_fade_cost(set);
 	}
 	columns_add(&state->columns, at->step, at->normal, magnitude);

@@ -7,7 +7,8 @@
 
 namespace phantom::hard {
 
-/// Faces, then the fans of their creases: what the user side's preparation makes of the shape.
+/// Faces, then the fans of their creases, then the rims where the mesh is open: what the user side's
+/// preparation makes of the shape.
 std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, double stiffness,
                                          double radius, bool two_sided = false);
 
