@@ -325,8 +325,7 @@ struct phantom_patch {
 	__u32 object; /* index into the set's objects */
 	__u32 material; /* index into the set's materials */
 	__u32 kind; /* PHANTOM_PATCH_... */
-	/* number of the open surface that it is part of, unique in the scene; 0: no rim concerns it */
-	__u32 surface;
+	__u32 surface; /* the open surface it is part of, unique in the scene; 0: no rim concerns it */
 	__u32 reserved;
 };
 

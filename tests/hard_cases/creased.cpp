@@ -61,4 +61,26 @@ std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double
     return out;
 }
 
+std::vector<reference::Triangle> with_rims(std::vector<reference::Triangle> triangles)
+{
+    mesh::Mesh mesh;
+    for (const auto& t : triangles) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), t.corner.begin(), t.corner.end());
+        mesh.faces.push_back({first, first + 1, first + 2});
+        mesh.neighbours.push_back({mesh::no_neighbour, mesh::no_neighbour, mesh::no_neighbour});
+    }
+    const mesh::Rims rims = mesh::make_rims(mesh, triangles[0].radius);
+    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
+        triangles[f].surface = rims.surface_of(f);
+    for (const mesh::Rim& rim : rims.edges) {
+        reference::Triangle t = triangles[rim.face];
+        t.corner = {mesh.vertices[rim.from], mesh.vertices[rim.to], mesh.vertices[rim.to]};
+        t.surface = rim.surface;
+        t.rim = true;
+        triangles.push_back(t);
+    }
+    return triangles;
+}
+
 } // namespace phantom::hard

@@ -17,4 +17,8 @@ std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, 
 std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double crease_deg, double stiffness,
                                           double radius, bool two_sided = false);
 
+/// The rims where the triangles leave off, by their points: faces before R of one know their surface, and the
+/// rims come last. All of one R.
+std::vector<reference::Triangle> with_rims(std::vector<reference::Triangle> triangles);
+
 } // namespace phantom::hard

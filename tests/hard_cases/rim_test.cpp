@@ -75,22 +75,35 @@ Shape bow_tie()
     return out;
 }
 
+double level(const Vec3& p)
+{
+    return p[2];
+}
+
 struct Sheet {
     const char* name;
     Triangles triangles;
+    double (*over)(const Vec3&); ///< > 0 where the point is certainly in front
+    double top;                  ///< z of the surface at `pressed`
 };
+
+/// Over each sheet's surface but the half ball's, R and more from a rim of all but the triangle's.
+constexpr Vec3 pressed{-1.5, -0.4, 0};
 
 std::vector<Sheet> sheets()
 {
+    const auto roof = [](double x, double) { return -std::abs(x); };
+    const auto groove = [](double x, double) { return std::abs(x); };
     return {
-        {"plate", opened(field(10, 5, flat))},
-        {"disc", opened(disc())},
-        {"bracket", opened(bracket())},
-        {"half ball", opened(half_ball(4))},
-        {"triangle", opened(one_triangle())},
-        {"bow tie", opened(bow_tie())},
-        {"creased", opened(field(10, 5, [](double x, double) { return -std::abs(x); }), 30)},
-        {"groove", opened(field(10, 5, [](double x, double) { return std::abs(x); }), 30)},
+        {"plate", opened(field(10, 5, flat)), level, 0},
+        {"disc", opened(disc()), level, 0},
+        {"bracket", opened(bracket()), level, 0},
+        {"half ball", opened(half_ball(4)), [](const Vec3& p) { return length(p) - 4; }, 0},
+        {"triangle", opened(one_triangle()), level, 0},
+        {"bow tie", opened(bow_tie()), level, 0},
+        {"roof", opened(field(10, 5, roof), 30), [](const Vec3& p) { return p[2] + std::abs(p[0]); }, -1.5},
+        {"groove", opened(field(10, 5, groove), 30), [](const Vec3& p) { return p[2] - std::abs(p[0]); },
+         1.5},
     };
 }
 
@@ -191,7 +204,7 @@ TEST(Rim, APathAcrossHasNoStep)
             Contact contact(*ops, sheet.triangles, settings_of(PHANTOM_MODEL_PROJECTED, PHANTOM_PROXY_OFF));
             double most = 0;
             unsigned crossed = 0;
-            for (int path = 0; path < 24; ++path) {
+            for (int path = 0; path < 8; ++path) {
                 // over a point of the rim, across it, at some height
                 const auto& faces = sheet.triangles;
                 std::size_t at;
@@ -202,22 +215,24 @@ TEST(Rim, APathAcrossHasNoStep)
                 const Vec3 over = add(scale(1 - part, faces[at].corner[0]), scale(part, faces[at].corner[1]));
                 const Vec3 way = unit({place(random), place(random), 0.3 * place(random)});
                 const Vec3 from = add(over, {0, 0, 0.05 + 0.4 * (1 + place(random))});
-                contact.restart();
                 Vec3 before{};
-                bool touched = false, free = false;
+                bool touched = false, free = false, in_front = false;
                 for (int i = -1500; i <= 1500; ++i) {
-                    const Touch touch = contact.tick(add(from, scale(i * step_mm, way)));
+                    const Vec3 p = add(from, scale(i * step_mm, way));
+                    const Touch touch = contact.tick(p);
                     ASSERT_FALSE(touch.invalid);
                     ASSERT_LE(length(touch.force), stiffness * radius + rounding_n);
-                    if (i > -1500)
+                    // one sheet only: who comes from behind meets its front at once
+                    if (in_front && sheet.over(p) > 0)
                         most = std::max(most, length(subtract(touch.force, before)));
+                    in_front = sheet.over(p) > 0;
                     before = touch.force;
                     touched |= length(before) > 0.01;
                     free |= length(before) == 0;
                 }
                 crossed += touched && free;
             }
-            EXPECT_GT(crossed, 4U);
+            EXPECT_GT(crossed, 1U);
             // k for the height, k for the fade, and the direction turns within the shell
             EXPECT_LE(most, 4 * stiffness * step_mm) << most / step_mm << " N/mm";
         }
@@ -229,14 +244,13 @@ TEST(Rim, SlidingOffPressedInAndComingBackHasNoStep)
     constexpr double step_mm = 1e-3, depth = 0.4;
     for (const Sheet& sheet : sheets()) {
         if (std::strcmp(sheet.name, "half ball") == 0)
-            continue; // below
+            continue; // under its edges V has a choice of faces: the next test
         for (const phantom_float_ops* ops : sections()) {
             SCOPED_TRACE(std::string(sheet.name) + " " + ops->name);
             Contact contact(*ops, sheet.triangles,
                             settings_of(PHANTOM_MODEL_PROJECTED, PHANTOM_PROXY_CONSTRAINED));
             // down in the middle of a part, then off over the rim, up beside it and back over it
-            const Vec3 middle = {-1.5, -0.4, 0};
-            Vec3 at = add(middle, {0, 0, 2.5}), before{};
+            Vec3 at = add(pressed, {0, 0, sheet.top + 2}), before{};
             double most = 0;
             bool inside = false, free = false;
             const auto go = [&](const Vec3& to) {
@@ -251,18 +265,51 @@ TEST(Rim, SlidingOffPressedInAndComingBackHasNoStep)
                     free |= length(before) == 0;
                 }
             };
-            const double surface = std::strcmp(sheet.name, "creased") == 0  ? -1.5
-                                   : std::strcmp(sheet.name, "groove") == 0 ? 1.5
-                                                                            : 0;
-            go(add(middle, {0, 0, surface - depth}));
+            go(add(pressed, {0, 0, sheet.top - depth}));
             EXPECT_TRUE(inside);
-            go({-1.5, -7, surface - depth});
+            go({-1.5, -7, sheet.top - depth});
             EXPECT_EQ(before, Vec3{}) << "beyond the rim";
-            go({-1.5, -7, surface + 0.5});
-            go({-1.5, 0, surface + 0.5});
-            EXPECT_GT(length(before), 0.2);
+            go({-1.5, -7, sheet.top + 0.5});
+            go(add(pressed, {0, 0, sheet.top + 0.5}));
+            EXPECT_GT(length(before), 0.1);
             EXPECT_TRUE(free);
             EXPECT_LE(most, (3 + depth / radius) * 2 * stiffness * step_mm) << most / step_mm << " N/mm";
+        }
+    }
+}
+
+/// Under the surface too the force is that of the same surface without a rim, times f; the state is the same.
+TEST(Rim, UnderTheSurfaceNothingButTheForceIsAnother)
+{
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> place(-5.5, 5.5), depth(-1.2, 0);
+    for (const Sheet& sheet : sheets()) {
+        const Triangles closed = without_rims(sheet.triangles);
+        for (const phantom_float_ops* ops : sections()) {
+            for (const std::uint32_t model : {PHANTOM_MODEL_PAPER, PHANTOM_MODEL_PROJECTED}) {
+                const Settings settings = settings_of(model, PHANTOM_PROXY_CONSTRAINED);
+                Contact open(*ops, sheet.triangles, settings), whole(*ops, closed, settings);
+                unsigned inside = 0, faded = 0;
+                Vec3 at{-1.5, -0.4, 6}, to = at;
+                for (int i = 0; i < 3000; ++i) {
+                    if (i % 60 == 0)
+                        to = i == 0 ? add(pressed, {0, 0, sheet.top - 0.5})
+                                    : Vec3{place(random), place(random), sheet.top + depth(random)};
+                    at = add(at, scale(1.0 / 20, subtract(to, at)));
+                    const Touch a = open.tick(at), b = whole.tick(at);
+                    ASSERT_EQ(a.inside, b.inside);
+                    ASSERT_EQ(a.proxy, b.proxy);
+                    if (!a.inside)
+                        continue;
+                    ++inside;
+                    const double f = std::min(1.0, distance_to_rim(sheet.triangles, a.proxy) / radius);
+                    faded += f < 1;
+                    ASSERT_LE(length(subtract(a.force, scale(f, b.force))), 2 * rounding_n)
+                        << sheet.name << " " << ops->name << " f = " << f;
+                }
+                EXPECT_GT(inside, 40U) << sheet.name;
+                EXPECT_GT(faded, 20U) << sheet.name;
+            }
         }
     }
 }
@@ -298,31 +345,37 @@ TEST(Rim, FarFromItEveryBitIsThatOfAClosedSurface)
 TEST(Rim, AgreesWithTheReference)
 {
     std::mt19937 random(4);
-    std::uniform_real_distribution<double> place(-6, 6), height(0.01, 1.1);
+    std::uniform_real_distribution<double> part(0, 1), height(0.01, 1.1);
     for (const Sheet& sheet : sheets()) {
+        const std::size_t faces = sheet.triangles.size() - rims_of(sheet.triangles);
         for (const auto model : {reference::Model::paper, reference::Model::projected}) {
             reference::Options options;
             options.model = model;
             const reference::Reference reference(sheet.triangles, options);
-            for (const phantom_float_ops* ops : sections()) {
-                Contact contact(*ops, sheet.triangles,
-                                settings_of(model == reference::Model::paper ? PHANTOM_MODEL_PAPER
-                                                                             : PHANTOM_MODEL_PROJECTED,
-                                            PHANTOM_PROXY_OFF));
-                unsigned faded = 0;
-                for (int i = 0; i < 300; ++i) {
-                    const Vec3 p = on_grid({place(random), place(random), height(random)});
-                    const reference::Result expected = reference.shell(p);
-                    if (expected.margin < 1e-5)
-                        continue;
+            const Settings settings =
+                settings_of(model == reference::Model::paper ? PHANTOM_MODEL_PAPER : PHANTOM_MODEL_PROJECTED,
+                            PHANTOM_PROXY_OFF);
+            std::vector<Contact> contacts;
+            for (const phantom_float_ops* ops : sections())
+                contacts.emplace_back(*ops, sheet.triangles, settings);
+            unsigned faded = 0;
+            for (int i = 0; i < 60; ++i) {
+                const auto& t = sheet.triangles[random() % faces];
+                const double a = part(random), b = (1 - a) * part(random);
+                const Vec3 foot =
+                    add(add(scale(a, t.corner[0]), scale(b, t.corner[1])), scale(1 - a - b, t.corner[2]));
+                const Vec3 p = on_grid(add(foot, scale(height(random), t.normal[0])));
+                const reference::Result expected = reference.shell(p);
+                if (expected.margin < 1e-5)
+                    continue;
+                faded += length(expected.force) > 0 && distance_to_rim(sheet.triangles, foot) < radius;
+                for (Contact& contact : contacts) {
                     contact.restart();
-                    const Touch touch = contact.tick(p);
-                    faded += length(expected.force) > 0 && distance_to_rim(sheet.triangles, p) < radius;
-                    ASSERT_LE(length(subtract(touch.force, expected.force)), 2e-5)
-                        << sheet.name << " " << ops->name;
+                    ASSERT_LE(length(subtract(contact.tick(p).force, expected.force)), 2e-5)
+                        << sheet.name << " " << contact.name();
                 }
-                EXPECT_GT(faded, 3U) << sheet.name;
             }
+            EXPECT_GT(faded, 5U) << sheet.name;
         }
     }
 }
