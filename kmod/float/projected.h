@@ -336,7 +336,7 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 		return;
 	out->height = mul(h, length);
 	out->normal = lanes3_over(n, lanes_select(valid, length, one));
-	out->magnitude = mul(block->stiffness[step], radius - out->height);
+	out->magnitude = lanes_limit_force(mul(block->stiffness[step], radius - out->height));
 	out->weight = one;
 	out->soft_walls = lanes_all(0);
 	near_wall = valid & ((mul(b0, turned) <= reach) | (mul(b1, turned) <= reach) |
