@@ -127,6 +127,14 @@ std::vector<Case> narrow_places()
     out.push_back(within(Kind::narrow, "slot that opens, R = 2 mm", wedge, 2,
                          {{{{-1, 0.2, 0.3}, {2, 0.1, 0.4}}}, {{{1, 0.2, 0.01}, {1, 0.2, 0.85}}}}));
     out.back().projected_step = smooth_step;
+    const auto slanted =
+        field(2, 5, [](double x, double y) { return 0.3 * x - 0.2 * y - 1; }).triangles(1, 2);
+    out.push_back(within(Kind::narrow, "a slanted sheet under another", joined(floor, slanted), 2,
+                         {{{{-1, 0.2, 0.3}, {1.2, -0.7, 0.5}}}, {{{0.3, 0.2, 0.01}, {0.3, 0.25, 2.1}}}}));
+    out.back().projected_step = smooth_step;
+    out.back().near_mm = 1.9;
+    out.back().outcome =
+        "`paper` drops the lower one's contact but near edges of the upper; `projected` adds it";
     const std::vector<Path> across{{{{-0.5, -0.4, -0.3}, {0, 0, 0}, {0.5, 0.4, 0.3}}},
                                    {{{-0.5, 0.1, 0.05}, {0.5, -0.02, 0.03}}}};
     out.push_back(within(Kind::narrow, "closed box smaller than R, smooth",

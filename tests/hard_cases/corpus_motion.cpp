@@ -213,11 +213,12 @@ std::vector<Case> limits()
              {{{{999, 10, 1500}, {1001, -5, 1200}}, 1}, {{{990, 990, 1010}, {1010, 1010, 990}}, 1}}));
     out.back().projected_step = measured;
     out.back().rigid = false;
-    constexpr double end = 2147.483647; // of a tip's 32 bits
+    constexpr double end =
+        1147.483646; // farther away, a distance to -1 m has more than 32 bits: nothing is covered
     const Triangles far = joined(moved(sphere(1, 10).triangles(1, 2), {-990, -990, -990}),
                                  moved(sphere(1, 10).triangles(1, 2), {990, 990, 990}));
     out.push_back(made(
-        Kind::limits, "tip at the end of its 32 bits", far, 2,
+        Kind::limits, "distances of 32 bits", far, 2,
         {{{{end, end, end}, {end, -end, -end}, {-end, -end, -end}, {-end, -end, end}, {-end, end, end}}, 0},
          {{{end, end, end}, {979, 990, 990}, {978.6, 990, 990}, {-end, end, -end}}, 0}}));
     out.back().projected_step = measured;
