@@ -104,4 +104,22 @@ TEST_F(Penetration, WithLateSetsIsHeldOnTheLevelThatTheSpeedAllows)
     }
 }
 
+/// A hand that hurries and lingers: the levels change in mid-contact, and the proxy goes along.
+TEST_F(Penetration, AtASpeedThatComesAndGoesChangesLevelsWithoutAStep)
+{
+    for (const double rate_hz : {1000.0, 3000.0}) {
+        study::PenetrationOptions options = rub(250, rate_hz);
+        options.path.swing = 0.95;
+        options.path.seconds = 2.4;
+        options.path.lift_s = 1.2;
+        options.timely = false;
+        options.feed_every = static_cast<std::uint32_t>(rate_hz / 200);
+        const study::PenetrationResult result = run(options);
+        expect_held(result);
+        EXPECT_GE(result.level_changes, 8U);
+        EXPECT_LE(result.error_p99, error_allowed_n(result));
+        EXPECT_LE(result.step_max, 1000 / rate_hz) << "the slew limit, 1 N per ms";
+    }
+}
+
 } // namespace
