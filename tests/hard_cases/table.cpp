@@ -90,7 +90,7 @@ struct Summary {
             paper = std::max(paper, m.outside.step);
         if (variant.model != PHANTOM_MODEL_PROJECTED || variant.newton_steps < exact_steps(ops))
             return;
-        double& step = hard.projected_step < measured ? promised : elsewhere;
+        double& step = hard.projected_step < measured && hard.fault.empty() ? promised : elsewhere;
         step = std::max(step, m.outside.step);
         gaps += m.gaps;
         doubles += hard.once ? m.doubles : 0;
@@ -100,9 +100,10 @@ struct Summary {
 void print_markdown()
 {
     std::map<Kind, Summary> kinds;
+    Summary faults;
     for (const Case& hard : corpus()) {
         const Course course(hard, table_coarseness);
-        Summary& summary = kinds[hard.kind];
+        Summary& summary = hard.fault.empty() ? kinds[hard.kind] : faults;
         ++summary.cases;
         for (const Variant& variant : variants)
             for (const phantom_float_ops* ops : sections())
@@ -112,10 +113,15 @@ void print_markdown()
         "| | cases | \\|F\\| | step | else | `paper` | gaps | doubles | wrong side | no number | refused |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     const auto step = [](double kr) { return kr > 0 ? fmt::format("{:.3f}", kr) : std::string("–"); };
-    for (const auto& [kind, s] : kinds)
-        fmt::print("| {} | {} | {:.4f} | {} | {} | {} | {} | {} | {} | {} | {} |\n", title(kind), s.cases,
-                   s.excess, step(s.promised), step(s.elsewhere), step(s.paper), s.gaps, s.doubles, s.wrong,
+    const auto print = [&step](const char* name, const Summary& s) {
+        fmt::print("| {} | {} | {:.4f} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, s.cases, s.excess,
+                   step(s.promised), step(s.elsewhere), step(s.paper), s.gaps, s.doubles, s.wrong,
                    s.not_numbers, s.refused);
+    };
+    for (const auto& [kind, summary] : kinds)
+        print(title(kind), summary);
+    if (faults.cases > 0)
+        print("known faults", faults);
 }
 
 void print_head()
