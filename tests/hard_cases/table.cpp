@@ -80,7 +80,7 @@ struct Summary {
     double paper = 0;
     std::uint64_t gaps = 0, doubles = 0, wrong = 0, not_numbers = 0;
 
-    void add(const Case& hard, const phantom_float_ops& ops, const Variant& variant, const Measured& m)
+    void add(const Case& hard, const Variant& variant, const Measured& m)
     {
         excess = std::max(excess, hard.saturates ? 0 : m.excess);
         not_numbers += m.not_numbers;
@@ -88,7 +88,7 @@ struct Summary {
         refused = std::max(refused, m.refused);
         if (variant.model == PHANTOM_MODEL_PAPER && variant.combine == PHANTOM_COMBINE_BOUNDED)
             paper = std::max(paper, m.outside.step);
-        if (variant.model != PHANTOM_MODEL_PROJECTED || variant.newton_steps < exact_steps(ops))
+        if (variant.model != PHANTOM_MODEL_PROJECTED || variant.newton_steps < exact_steps)
             return;
         double& step = hard.projected_step < measured && hard.fault.empty() ? promised : elsewhere;
         step = std::max(step, m.outside.step);
@@ -107,7 +107,7 @@ void print_markdown()
         ++summary.cases;
         for (const Variant& variant : variants)
             for (const phantom_float_ops* ops : sections())
-                summary.add(hard, *ops, variant, run_all_proxies(course, hard, *ops, variant));
+                summary.add(hard, variant, run_all_proxies(course, hard, *ops, variant));
     }
     fmt::print(
         "| | cases | \\|F\\| | step | else | `paper` | gaps | doubles | wrong side | no number | refused |\n"
