@@ -51,6 +51,7 @@ struct phantom_touch {
 	u32 proxy_face;
 	s32 normal_q30[3]; /* of the contact there; zero without one */
 	u32 carry_nm; /* the geometry has changed since, by about that much; 0 = it has not */
+	u32 moved_nm; /* and may have moved by that much */
 	u64 evaluated_ns; /* when */
 };
 
