@@ -416,11 +416,10 @@ static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pa
 		pass->flags |= PHANTOM_TICK_STALE;
 	reached = !(pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) && !off &&
 		  !servo->safety.overloaded;
-	if (reached) {
+	if (reached)
 		phantom_servo_feel(servo, pass);
-	} else if (touch->valid && pass->now_ns - touch->evaluated_ns > PHANTOM_MEMORY_NS) {
+	else if (touch->valid && pass->now_ns - touch->evaluated_ns > PHANTOM_MEMORY_NS)
 		phantom_servo_forget_touch(servo);
-	}
 	if (reached != servo->reached)
 		pass->blend_ns = PHANTOM_FADE_NS;
 	servo->reached = reached;
