@@ -38,6 +38,9 @@
 /* Where the geometry changes, surfaces that ought to be the same may lie this far apart. */
 #define PHANTOM_CARRY_NM 10000
 
+/* From one round of phantom_servo_search() to the next: 3 rounds for a surface that moved by 1 mm. */
+#define PHANTOM_SEARCH_WIDER 8
+
 static u64 phantom_servo_now(const struct phantom_servo *servo)
 {
 	return servo->clock->ops->now_ns(servo->clock);
@@ -223,19 +226,65 @@ static bool phantom_servo_place(struct phantom_servo *servo, const struct phanto
 	       phantom_set_covers(slot, job->tip_nm, 0);
 }
 
-/* The job's path begins lift_nm over the proxy, or where the tip was. False: that does not fit. */
-static bool phantom_servo_lift(struct phantom_servo *servo, u64 lift_nm)
+/*
+ * The place lift_nm over the proxy, or over where the tip was, and aside_nm from there, relative to
+ * the set. False: it does not fit.
+ */
+static bool phantom_servo_lift(struct phantom_servo *servo, s64 lift_nm, const s64 aside_nm[3],
+			       s32 relative_nm[3])
 {
 	const struct phantom_touch *touch = &servo->touch;
 	const s64 *base_nm = touch->inside ? touch->proxy_nm : touch->previous_nm;
-	struct phantom_float_job *job = &servo->job;
-	s64 start_nm[3];
+	s64 place_nm[3];
 	int axis;
 
 	for (axis = 0; axis < 3; axis++)
-		start_nm[axis] =
-			base_nm[axis] + (s64)lift_nm * touch->normal_q30[axis] / PHANTOM_Q30_ONE;
-	return phantom_set_relative(servo->active, start_nm, job->previous_nm);
+		place_nm[axis] = base_nm[axis] + aside_nm[axis] +
+				 lift_nm * touch->normal_q30[axis] / PHANTOM_Q30_ONE;
+	return phantom_set_relative(servo->active, place_nm, relative_nm);
+}
+
+/* The tick of a tip that comes from the job's previous_nm, outside, if there is a path. */
+static void phantom_servo_arrive(struct phantom_servo *servo, bool path)
+{
+	struct phantom_float_job *job = &servo->job;
+
+	job->inside = 0;
+	job->proxy_face = PHANTOM_PATCH_NONE;
+	memcpy(job->proxy_nm, job->tip_nm, sizeof(job->proxy_nm));
+	job->path_valid = path;
+	phantom_servo_float_tick(servo, servo->active->ops);
+}
+
+/*
+ * The proxy's place on a surface that lies beside the old proxy on all sides: a crease that has
+ * moved up. Looked for on short paths through the old place, along the normal, shifted to each side;
+ * from where one goes in the proxy walks down to the tip. False: there is none.
+ */
+static bool phantom_servo_search(struct phantom_servo *servo, s64 reach_nm)
+{
+	struct phantom_float_job *job = &servo->job;
+	s32 tip_nm[3];
+	int side;
+
+	memcpy(tip_nm, job->tip_nm, sizeof(tip_nm));
+	for (side = 0; side < 27; side++) {
+		const s64 aside_nm[3] = {(side % 3 - 1) * reach_nm, (side / 3 % 3 - 1) * reach_nm,
+					 (side / 9 - 1) * reach_nm};
+		bool fits = phantom_servo_lift(servo, reach_nm, aside_nm, job->previous_nm) &&
+			    phantom_servo_lift(servo, -reach_nm, aside_nm, job->tip_nm);
+
+		if (fits)
+			phantom_servo_arrive(servo, true);
+		memcpy(job->tip_nm, tip_nm, sizeof(tip_nm));
+		memcpy(job->previous_nm, tip_nm, sizeof(tip_nm));
+		if (!fits || !job->inside)
+			continue;
+		phantom_servo_float_tick(servo, servo->active->ops);
+		if (job->inside)
+			return true;
+	}
+	return false;
 }
 
 /*
@@ -245,24 +294,30 @@ static bool phantom_servo_lift(struct phantom_servo *servo, u64 lift_nm)
  * outside, along the normal of the old contact: if the new surface stands between, the proxy is
  * where that path crosses it. First from as far as the two may differ; if nothing at all is felt
  * then, from a contact radius farther: it may have risen over the tip. (Not at once: in a narrow
- * slot that start lies behind another wall.)
+ * slot that start lies behind another wall.) At last round about.
  */
 static void phantom_servo_carry(struct phantom_servo *servo)
 {
+	static const s64 straight_nm[3];
 	struct phantom_float_job *job = &servo->job;
-	u64 lift_nm = servo->touch.carry_nm;
+	s64 lift_nm = servo->touch.carry_nm;
 	int attempt;
 
 	for (attempt = 0; attempt < 2; attempt++) {
-		job->inside = 0;
-		job->proxy_face = PHANTOM_PATCH_NONE;
-		memcpy(job->proxy_nm, job->tip_nm, sizeof(job->proxy_nm));
-		job->path_valid = phantom_servo_lift(servo, lift_nm);
-		phantom_servo_float_tick(servo, servo->active->ops);
+		bool path = phantom_servo_lift(servo, lift_nm, straight_nm, job->previous_nm);
+
+		phantom_servo_arrive(servo, path);
 		if (job->inside || job->contacts)
 			return;
 		lift_nm += servo->active->reach_nm;
 	}
+	if (!servo->touch.inside)
+		return;
+	for (lift_nm = servo->touch.carry_nm; lift_nm <= servo->touch.moved_nm;
+	     lift_nm *= PHANTOM_SEARCH_WIDER)
+		if (phantom_servo_search(servo, lift_nm))
+			return;
+	phantom_servo_arrive(servo, false);
 }
 
 static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_pass *pass)
@@ -289,6 +344,7 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 		phantom_servo_float_tick(servo, slot->ops);
 
 	touch->carry_nm = 0;
+	touch->moved_nm = 0;
 	touch->inside = job->inside;
 	touch->proxy_face = job->inside ? job->proxy_face : PHANTOM_PATCH_NONE;
 	for (axis = 0; axis < 3; axis++)
@@ -338,6 +394,9 @@ static void phantom_servo_depart(struct phantom_servo *servo, struct phantom_pas
 	}
 	servo->active = slot;
 	touch->carry_nm = max_t(u32, touch->carry_nm, min_t(u64, apart, PHANTOM_COVERAGE_MAX_NM));
+	touch->moved_nm = max_t(u32, touch->moved_nm, touch->carry_nm);
+	if (outgoing->level == slot->level)
+		touch->moved_nm = max_t(u32, touch->moved_nm, slot->reach_nm);
 	if (!pass->blend_ns)
 		pass->blend_ns = servo->crossfade_ns;
 	phantom_set_release(outgoing);
@@ -358,11 +417,10 @@ static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pa
 		pass->flags |= PHANTOM_TICK_STALE;
 	reached = !(pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) && !off &&
 		  !servo->safety.overloaded;
-	if (reached) {
+	if (reached)
 		phantom_servo_feel(servo, pass);
-	} else if (touch->valid && pass->now_ns - touch->evaluated_ns > PHANTOM_MEMORY_NS) {
+	else if (touch->valid && pass->now_ns - touch->evaluated_ns > PHANTOM_MEMORY_NS)
 		phantom_servo_forget_touch(servo);
-	}
 	if (reached != servo->reached)
 		pass->blend_ns = PHANTOM_FADE_NS;
 	servo->reached = reached;

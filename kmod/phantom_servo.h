@@ -51,6 +51,7 @@ struct phantom_touch {
 	u32 proxy_face;
 	s32 normal_q30[3]; /* of the contact there; zero without one */
 	u32 carry_nm; /* the geometry has changed since, by about that much; 0 = it has not */
+	u32 moved_nm; /* and may have moved by that much */
 	u64 evaluated_ns; /* when */
 };
 
@@ -76,7 +77,8 @@ struct phantom_servo {
 	u32 unit; /* N of /dev/phantom_rtN, for traces; the owner's to set after init */
 	struct phantom_clock *clock;
 	struct phantom_device *device; /* NULL: there is none */
-	const struct phantom_float_ops *ops[PHANTOM_ARITHS]; /* NULL: not offered; FLOAT always is */
+	/* NULL: not offered; FLOAT always is */
+	const struct phantom_float_ops *ops[PHANTOM_ARITHS];
 	u64 features; /* PHANTOM_FEATURE_... */
 
 	struct mutex control; /* one at a time changes the servo */

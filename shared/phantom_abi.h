@@ -72,10 +72,10 @@
  *   A set whose level is not that of the set before, or that knows an object by another revision,
  *   has other triangles where the same surface was: face numbers mean nothing across such a change.
  *   The force goes over to the new surface within start.crossfade_ms, and follows the tip on it from
- *   the first tick on. A proxy is carried to the new surface along its normal, by up to the sum of
- *   the two levels' errors, or the set's largest contact radius where the surface itself moved: so
- *   far may a surface rise from one set to the next and still be felt by a tip that touches it or is
- *   below it. One that sinks below the tip lets it go.
+ *   the first tick on. A proxy is carried to the new surface, along its normal or, from a crease,
+ *   beside it, by up to the sum of the two levels' errors, or the set's largest contact radius where
+ *   the surface itself moved: so far may a surface rise from one set to the next and still be felt
+ *   by a tip that touches it or is below it. One that sinks below the tip lets it go.
  *
  * POLL
  *   POLLIN    a record can be read, or the end of a run has not yet been read.

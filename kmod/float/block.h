@@ -77,6 +77,11 @@ struct rim_block {
 	nm_row surface; /* phantom_patch.surface; to be compared only */
 };
 
+/* What a tick of 64 patches reads stays in the first-level cache (32 kB), its own stack beside it. */
+_Static_assert(sizeof(real) > sizeof(float) ||
+		       sizeof(struct block) * (64 / PHANTOM_BLOCK) <= 24 * 1024,
+	       "64 patches take 24 kB at most");
+
 struct float_material {
 	real stiffness; /* N/mm */
 	real radius; /* mm */

@@ -73,13 +73,10 @@ static inline struct real3 combine_paper(struct real3 sum, real most, u32 rule)
 	return real3_scale(sum, real_min(REAL(1), divide(most, length)));
 }
 
-/* The normal of a contact is the direction of its force. */
+/* The normal of a contact is the direction of its force; 0 without one. */
 static inline void contact_direction(struct contact_force *out)
 {
-	real length = real3_length(out->force);
-
-	if (length > 0)
-		out->normal = real3_over(out->force, length);
+	out->normal = real3_unit(out->force);
 }
 
 #endif /* PHANTOM_FLOAT_COMBINE_H */

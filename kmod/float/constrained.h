@@ -173,7 +173,7 @@ static inline struct real3 constrained_normal(const struct walk *walk)
 		sum = walk->way;
 	}
 	a = real3_length(sum);
-	return a > 0 ? real3_over(sum, a) : n;
+	return a > 0 ? real3_unit(sum) : n;
 }
 
 /* The walk is over, and the tip over the surface it ended on. */

@@ -77,6 +77,21 @@ static inline s32 nm_saturate(s64 value)
 	return (s32)value;
 }
 
+/*
+ * Places that a section makes stay as near to the set's origin as the servo lets the tip be, so that the
+ * distance to a vertex, at most PHANTOM_COORDINATE_MAX_NM from it, fits s32.
+ */
+#define NM_PLACE_MAX (0x7fffffffLL - PHANTOM_COORDINATE_MAX_NM)
+
+static inline s32 nm_place(s64 value)
+{
+	if (value > NM_PLACE_MAX)
+		return (s32)NM_PLACE_MAX;
+	if (value < -NM_PLACE_MAX)
+		return (s32)-NM_PLACE_MAX;
+	return (s32)value;
+}
+
 /* from + (by in mm), nm. */
 static inline void nm_offset(const s32 from[3], struct real3 by, s32 out[3])
 {
@@ -84,7 +99,7 @@ static inline void nm_offset(const s32 from[3], struct real3 by, s32 out[3])
 	u32 axis;
 
 	for (axis = 0; axis < 3; axis++) {
-		out[axis] = nm_saturate(from[axis] + real_to_nm(way[axis]));
+		out[axis] = nm_place(from[axis] + real_to_nm(way[axis]));
 	}
 }
 
@@ -104,8 +119,8 @@ static inline void segment_point(const struct segment *segment, real along, s32 
 	u32 axis;
 
 	for (axis = 0; axis < 3; axis++) {
-		out_nm[axis] = (s32)(segment->begin_nm[axis] +
-				     real_part_of_nm(along, segment->way_nm[axis]));
+		out_nm[axis] = nm_place(segment->begin_nm[axis] +
+					real_part_of_nm(along, segment->way_nm[axis]));
 	}
 }
 

@@ -126,7 +126,8 @@ LANES_INLINE struct lanes3 lanes3_over(struct lanes3 a, lanes s)
 /* Of length 1; of no length stays so. */
 LANES_INLINE struct lanes3 lanes3_unit(struct lanes3 a)
 {
-	return lanes3_over(a, lanes_max(lanes3_length(a), lanes_all(REAL_SMALLEST)));
+	lanes_unit(&a.x, &a.y, &a.z);
+	return a;
 }
 
 LANES_INLINE struct lanes3 lanes3_all(struct real3 a)
@@ -190,10 +191,10 @@ LANES_INLINE real real3_length(struct real3 a)
 	return lanes3_length(lanes3_all(a))[0];
 }
 
-/* a / s */
-LANES_INLINE struct real3 real3_over(struct real3 a, real s)
+/* Of length 1; of no length stays so. */
+LANES_INLINE struct real3 real3_unit(struct real3 a)
 {
-	return lanes3_lane(lanes3_over(lanes3_all(a), lanes_all(s)), 0);
+	return lanes3_lane(lanes3_unit(lanes3_all(a)), 0);
 }
 
 #endif /* PHANTOM_FLOAT_LANES_H */

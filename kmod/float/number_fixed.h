@@ -32,7 +32,6 @@ _Static_assert(PHANTOM_LANES == 1, "one fixed-point number to a lane");
 
 #define REAL_MOST FIXED_LIMIT
 #define REAL_TINY REAL(1e-7)
-#define REAL_SMALLEST 1
 #define REAL_VANISHING REAL(8e-6)
 
 /* ---- products and quotients ------------------------------------------------ */
@@ -211,9 +210,42 @@ LANES_INLINE void lanes_over(lanes *x, lanes *y, lanes *z, lanes s)
 	*z = lanes_divide(*z, s);
 }
 
+/* Of length 1, to the last bit of the direction: made long before it is measured. No length stays so. */
+LANES_INLINE void lanes_unit(lanes *x, lanes *y, lanes *z)
+{
+	u64 most = fixed_magnitude((*x)[0]) | fixed_magnitude((*y)[0]) | fixed_magnitude((*z)[0]);
+	s32 shift;
+
+	if (!most)
+		return;
+	/* 2^42: as long as quotients and the square of the length have room for */
+	shift = __builtin_clzll(most) - (64 - 42);
+	*x = shift > 0 ? *x << shift : *x;
+	*y = shift > 0 ? *y << shift : *y;
+	*z = shift > 0 ? *z << shift : *z;
+	lanes_over(x, y, z, lanes_length(*x, *y, *z));
+}
+
+/* There is no infinity, and all is a number. */
 LANES_INLINE bool real_finite(real a)
 {
-	return a > -FIXED_LIMIT && a < FIXED_LIMIT;
+	(void)a;
+	return true;
+}
+
+/*
+ * N: three roots of each of 512 patches add up to less than 2^63. The border's integers end at 2,147 N.
+ */
+#define FIXED_FORCE_MAX REAL(32768)
+
+LANES_INLINE real real_limit_force(real n)
+{
+	return n < FIXED_FORCE_MAX ? n : FIXED_FORCE_MAX;
+}
+
+LANES_INLINE lanes lanes_limit_force(lanes n)
+{
+	return (lanes){real_limit_force(n[0])};
 }
 
 /* ---- nm and the border ------------------------------------------------------- */

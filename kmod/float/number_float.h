@@ -40,6 +40,10 @@ typedef double double_pair __attribute__((vector_size(16)));
 /* A length whose square is above float32's smallest normal number. */
 #define REAL_SMALLEST REAL(3e-19)
 
+/* Forces may be added up by the thousand: nothing to limit here. */
+#define real_limit_force(n) (n)
+#define lanes_limit_force(n) (n)
+
 /* Both real, or both lanes. */
 #define mul(a, b) ((a) * (b))
 #define divide(a, b) ((a) / (b))
@@ -153,6 +157,12 @@ LANES_INLINE void lanes_over(lanes *x, lanes *y, lanes *z, lanes s)
 	*x *= inverse;
 	*y *= inverse;
 	*z *= inverse;
+}
+
+/* Of length 1; of no length stays so. */
+LANES_INLINE void lanes_unit(lanes *x, lanes *y, lanes *z)
+{
+	lanes_over(x, y, z, lanes_max(lanes_length(*x, *y, *z), (lanes){} + REAL_SMALLEST));
 }
 
 /* False for an infinity or what is no number. */

@@ -129,7 +129,9 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	n = lanes3_unit(n);
 	cosine = lanes3_dot(g, n);
 	contact &= cosine > GRAZING;
-	out->length = divide(height, lanes_max(cosine, lanes_all(GRAZING)));
+	/* under the plane by rounding is on it: a small cosine would make a length of that */
+	out->length =
+		divide(lanes_max(height, lanes_all(0)), lanes_max(cosine, lanes_all(GRAZING)));
 	contact &= out->length < radius;
 	if (!mask_bits(contact))
 		return false;
@@ -138,7 +140,8 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	out->normal.x = lanes_keep(contact, n.x);
 	out->normal.y = lanes_keep(contact, n.y);
 	out->normal.z = lanes_keep(contact, n.z);
-	out->magnitude = lanes_keep(contact, mul(block->stiffness[step], radius - out->length));
+	out->magnitude = lanes_keep(
+		contact, lanes_limit_force(mul(block->stiffness[step], radius - out->length)));
 	out->height = height;
 	return true;
 }

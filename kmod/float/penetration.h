@@ -206,7 +206,7 @@ static inline u32 penetration_follow(struct phantom_float_job *job)
 	for (axis = 0; axis < 3; axis++) {
 		s64 moved = job->path_valid ? (s64)job->tip_nm[axis] - job->previous_nm[axis] : 0;
 
-		target[axis] = nm_saturate(job->proxy_nm[axis] + moved);
+		target[axis] = nm_place(job->proxy_nm[axis] + moved);
 	}
 	penetration_prolong(job, g, target);
 	if (!segment_set(&over, job->tip_nm, target))
@@ -269,7 +269,7 @@ static inline struct real3 penetration_normal(const struct phantom_float_job *jo
 
 	if (!(length > 0))
 		return row3_lane(&block->face_normal, lane);
-	return real3_over(normal, length);
+	return real3_unit(normal);
 }
 
 /* F = k (R n(V) + (V - P1)) */

@@ -18,8 +18,8 @@
  *
  *   S = sum s k (R - h|N|) n        F = S min(1, kR / |S|)
  *
- * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than MONOTONE_RATIO
- * fold (its Bernstein coefficients say so), there is one root or none, and from -c0/c1 it is
+ * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than
+ * 1 / MONOTONE_PART fold (its Bernstein coefficients say so), there is one root or none, and from -c0/c1 it is
  * found in model.newton_steps steps: the accuracy knob. They are Halley's, a Newton step with the
  * curvature in it: an error of e becomes e^3, not e^2, for the same one division. Elsewhere the interval is split at the
  * critical points and each part that changes sign is solved by Newton kept in its bracket.
@@ -49,7 +49,7 @@
 #include "paper.h"
 #include "combine.h"
 
-#define MONOTONE_RATIO 4
+#define MONOTONE_PART REAL(0.25)
 
 /* Half the width of a soft wall, in units of rounding_mm(). */
 #define SOFT_WALL 8
@@ -212,7 +212,7 @@ LANES_INLINE lanes cubic_correction(const struct cubic *c, lanes h, mask_lanes u
 	lanes square = mul(slope, slope);
 	lanes under = square - mul(value, mul(3 * c->c3, h) + c->c2);
 	/* bent too much for it: Newton's */
-	mask_lanes near = 4 * under > square;
+	mask_lanes near = under > mul(square, lanes_all(REAL(0.25)));
 
 	return divide(mul(value, lanes_select(near, slope, lanes_all(REAL(1)))),
 		      lanes_select(near, under, slope));
@@ -229,8 +229,8 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 	lanes first = c->c1, middle = c->c1 + mul(c->c2, high), last = cubic_slope(c, high);
 	lanes least = lanes_min(lanes_min(first, middle), last);
 	lanes most = lanes_max(lanes_max(first, middle), last);
-	mask_lanes falling = (most < zero) & (least >= MONOTONE_RATIO * most);
-	mask_lanes rising = (least > zero) & (most <= MONOTONE_RATIO * least);
+	mask_lanes falling = (most < zero) & (mul(least, lanes_all(MONOTONE_PART)) >= most);
+	mask_lanes rising = (least > zero) & (mul(most, lanes_all(MONOTONE_PART)) <= least);
 	mask_lanes usual = candidates & (falling | rising);
 	u32 split, l, i, rounds = 1;
 	lanes h;
@@ -277,9 +277,9 @@ LANES_INLINE lanes soft_wall(lanes area, struct lanes3 normal, struct lanes3 edg
 }
 
 /* Is the root in the shell, and what does it give? */
-LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct lanes3 q, lanes h,
-				   mask_lanes valid, mask_lanes split, real rounding, bool fan,
-				   struct shell_point *out)
+LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
+				   lanes h, mask_lanes valid, mask_lanes split, real rounding,
+				   bool fan, struct shell_point *out)
 {
 	const lanes one = lanes_all(REAL(1));
 	const real soft = SOFT_WALL * rounding;
@@ -289,7 +289,13 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 	/* the offset edges E1, -E2, and w = P - X0 */
 	struct lanes3 e1 = lanes3_add(row3_step(&block->edge[0].along, step), lanes3_scale(f1, h));
 	struct lanes3 e2 = lanes3_add(row3_step(&block->edge[2].along, step), lanes3_scale(f2, h));
-	struct lanes3 w = lanes3_sub(q, lanes3_scale(m0, h));
+	struct lanes3 w = lanes3_sub(from_corner(block, step, 0, tip), lanes3_scale(m0, h));
+	/* E2 - E1 and P - X1: b0 = 1 - b1 - b2 would be nothing but rounding at the end of a long edge */
+	struct lanes3 e0 =
+		lanes3_add(row3_step(&block->edge[1].along, step),
+			   lanes3_scale(row3_step(&block->edge[1].normal_along, step), h));
+	struct lanes3 w0 = lanes3_sub(from_corner(block, step, 1, tip),
+				      lanes3_scale(row3_step(&block->edge[1].normal, step), h));
 	/* A(h) / |A0| */
 	struct lanes3 area =
 		lanes3_add(row3_step(&block->face_normal, step),
@@ -311,7 +317,7 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 	inverse = divide(one, lanes_select(valid, size, one));
 	b1 = mul(lanes3_dot(lanes3_cross(e2, w), area), inverse);
 	b2 = mul(lanes3_dot(lanes3_cross(e1, w), area), inverse);
-	b0 = one - b1 - b2;
+	b0 = mul(lanes3_dot(lanes3_cross(e0, w0), area), inverse);
 	n = lanes3_sub(lanes3_add(m0, lanes3_scale(f1, b1)), lanes3_scale(f2, b2));
 	turned = mul(mul(lanes_abs(lanes3_dot(area, n)), block->area[step]), power);
 	/* |N x E_i| is at most the length of an offset edge */
@@ -336,7 +342,7 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 		return;
 	out->height = mul(h, length);
 	out->normal = lanes3_over(n, lanes_select(valid, length, one));
-	out->magnitude = mul(block->stiffness[step], radius - out->height);
+	out->magnitude = lanes_limit_force(mul(block->stiffness[step], radius - out->height));
 	out->weight = one;
 	out->soft_walls = lanes_all(0);
 	near_wall = valid & ((mul(b0, turned) <= reach) | (mul(b1, turned) <= reach) |
@@ -345,10 +351,9 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, struct l
 		return;
 	turned = lanes_max(turned, mul(mul(mul(lanes3_length(area), block->area[step]), power),
 				       lanes_all(IN_PLANE)));
-	out->weight =
-		mul(mul(soft_wall(mul(b2, turned), n, e1, soft, &out->soft_walls),
-			soft_wall(mul(b1, turned), n, e2, soft, &out->soft_walls)),
-		    soft_wall(mul(b0, turned), n, lanes3_add(e1, e2), soft, &out->soft_walls));
+	out->weight = mul(mul(soft_wall(mul(b2, turned), n, e1, soft, &out->soft_walls),
+			      soft_wall(mul(b1, turned), n, e2, soft, &out->soft_walls)),
+			  soft_wall(mul(b0, turned), n, e0, soft, &out->soft_walls));
 	/* a lane's result must not depend on who shares its step */
 	out->weight = lanes_select(near_wall, out->weight, one);
 	out->soft_walls = lanes_keep(near_wall, out->soft_walls);
@@ -389,7 +394,7 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	c = shell_cubic(block, step, q, height);
 	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
 	for (i = 0; i < rounds; i++) {
-		shell_evaluate(block, step, q, roots.h[i], roots.valid[i], roots.split, rounding,
+		shell_evaluate(block, step, tip, roots.h[i], roots.valid[i], roots.split, rounding,
 			       fan, &point[i]);
 		any |= mask_bits(point[i].accepted);
 	}

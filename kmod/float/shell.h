@@ -191,7 +191,8 @@ static inline u32 shell_projected_sum(const struct phantom_float_job *job,
 
 		state->sum = real3_add(state->sum,
 				       real3_scale(root->normal, mul(root->sign, magnitude)));
-		state->most = real_max(state->most, mul(material->stiffness, material->radius));
+		state->most = real_max(
+			state->most, real_limit_force(mul(material->stiffness, material->radius)));
 		state->forces += magnitude;
 		state->damping += mul(mul(magnitude, material->damping), fade);
 		if (root->sign < 0) {

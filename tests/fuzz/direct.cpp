@@ -221,6 +221,7 @@ class Direct final : public Subject {
             sections_.emplace_back(phantom_float_avx512);
         same_bits_ = sections_.size();
         sections_.emplace_back(phantom_float_double);
+        sections_.emplace_back(phantom_float_fixed);
         model_.model = PHANTOM_MODEL_PROJECTED;
         model_.newton_steps = 2;
         model_.combine = PHANTOM_COMBINE_BOUNDED;

@@ -210,7 +210,7 @@ std::vector<Case> limits()
     out.back().penetrates = out.back().saturates = true;
     out.push_back(
         made(Kind::limits, "corners at +-1 m, R = 1 m", box({1000, 1000, 1000}).triangles(1, 1000), 1000,
-             {{{{999, 10, 1500}, {1001, -5, 1200}}, 1}, {{{990, 990, 1010}, {1010, 1010, 990}}, 1}}));
+             {{{{999, 10, 1140}, {1001, -5, 1100}}, 1}, {{{990, 990, 1010}, {1010, 1010, 990}}, 1}}));
     out.back().projected_step = measured;
     out.back().rigid = false;
     constexpr double end =

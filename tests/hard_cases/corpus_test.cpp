@@ -34,7 +34,7 @@ std::vector<Variant> exact_variants()
     std::copy_if(variants.begin(), variants.end(), std::back_inserter(out), [](const Variant& v) {
         if (v.combine == PHANTOM_COMBINE_PAPER)
             return false; // where contacts oppose each other rounding turns the force over: combine.h
-        return v.model == PHANTOM_MODEL_PAPER || v.newton_steps >= 3;
+        return v.model == PHANTOM_MODEL_PAPER || v.newton_steps >= exact_steps;
     });
     return out;
 }

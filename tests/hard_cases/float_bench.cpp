@@ -1,8 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Times of one float-section tick with 64 patches: median ns of many batches. No test.
+// What one tick of a section costs with 64 patches. By itself in ns, the median of many batches; under
+// callgrind in instructions, one dump for each figure (tools/tick-instructions reads them). No test.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+
+#include <fmt/format.h>
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#define COUNTING (RUNNING_ON_VALGRIND != 0)
+#else
+#define COUNTING false
+#define CALLGRIND_ZERO_STATS
+#define CALLGRIND_DUMP_STATS_AT(name) (void)(name)
+#endif
 
 #include "contact.hpp"
 #include "shapes_of_interest.hpp"
@@ -70,28 +81,50 @@ double median_ns(Contact& contact, const std::vector<Vec3>& tips)
     return ns[batches / 2];
 }
 
+/// One pass over the tips, then a dump of what it took; the script divides by their number.
+void count_instructions(Contact& contact, const std::vector<Vec3>& tips, const std::string& label)
+{
+    const std::string name = fmt::format("{} / {}", tips.size(), label);
+    for (const Vec3& tip : tips) // the first tick after a restart looks for no crossing
+        contact.tick(tip);
+    CALLGRIND_ZERO_STATS;
+    for (const Vec3& tip : tips)
+        contact.tick(tip);
+    CALLGRIND_DUMP_STATS_AT(name.c_str());
+}
+
 void measure(const char* name, const std::vector<reference::Triangle>& triangles, double low, double high)
 {
     if (triangles.empty())
         return;
+    struct Column {
+        const char* name;
+        std::uint32_t model, steps;
+    };
     std::mt19937 random(1);
     std::vector<Vec3> tips;
     for (int i = 0; i < 32; ++i)
         tips.push_back(point_near({triangles[0], triangles[1], triangles[2]}, random, low, high));
     for (const phantom_float_ops* ops : sections()) {
-        Settings settings;
-        settings.model = PHANTOM_MODEL_PAPER;
-        settings.proxy = PHANTOM_PROXY_PAPER;
-        Contact paper(*ops, triangles, settings);
-        std::printf("%-10s %-7s paper %7.0f", name, ops->name, median_ns(paper, tips));
-        settings.model = PHANTOM_MODEL_PROJECTED;
-        for (settings.newton_steps = 1; settings.newton_steps <= 3; ++settings.newton_steps) {
-            Contact projected(*ops, triangles, settings);
-            std::printf("  projected/%u %7.0f", settings.newton_steps, median_ns(projected, tips));
+        if (!COUNTING)
+            fmt::print("{:<15} {:<7}", name, ops->name);
+        for (const Column& column :
+             {Column{"paper", PHANTOM_MODEL_PAPER, 0}, Column{"projected/1", PHANTOM_MODEL_PROJECTED, 1},
+              Column{"projected/2", PHANTOM_MODEL_PROJECTED, 2},
+              Column{"projected/3", PHANTOM_MODEL_PROJECTED, 3},
+              Column{"call alone", PHANTOM_MODEL_OFF, 0}}) {
+            Settings settings;
+            settings.model = column.model;
+            settings.newton_steps = column.steps;
+            settings.proxy = PHANTOM_PROXY_CONSTRAINED;
+            Contact contact(*ops, triangles, settings);
+            if (COUNTING)
+                count_instructions(contact, tips, fmt::format("{} / {} / {}", name, ops->name, column.name));
+            else
+                fmt::print("  {} {:5.0f}", column.name, median_ns(contact, tips));
         }
-        settings.model = PHANTOM_MODEL_OFF;
-        Contact off(*ops, triangles, settings);
-        std::printf("  (call alone %4.0f) ns\n", median_ns(off, tips));
+        if (!COUNTING)
+            fmt::print(" ns\n");
     }
 }
 
@@ -100,7 +133,7 @@ void measure(const char* name, const std::vector<reference::Triangle>& triangles
 int main()
 {
     measure("typical", typical(), 0.1, 1.8);
-    measure("layers", layers(), 0.5, 1.5);
+    measure("all in contact", layers(), 0.5, 1.5);
     measure("bunny", scan(), 0.1, 0.9);
     return 0;
 }

@@ -70,7 +70,7 @@ class Table {
                 "through | stuck | CHAI3D 3.3 | HAPI 1.3 |\n|{}\n",
                 " --- |" + repeat(" --- |", 10));
         else
-            fmt::print("\n{:>5} {:>4} {:>14} {:>9}  {:<24} {:>7} {:>7} {:>5} {:>7} {:>5}  {}\n", "mm/s",
+            fmt::print("\n{:>6} {:>4} {:>14} {:>9}  {:<24} {:>7} {:>7} {:>5} {:>7} {:>5}  {}\n", "mm/s",
                        "kHz", "sets", "level", "error N p50 / p99 / max", "step N", "under", "lost",
                        "through", "stuck", "CHAI3D p50 / p99; HAPI");
     }
@@ -82,17 +82,20 @@ class Table {
             options.timely ? "every tick" : fmt::format("every {:g} ms", 1e3 * options.feed_every / rate);
         const std::string error =
             fmt::format("{:.4f} / {:.4f} / {:.4f}", r.error_p50, r.error_p99, r.error_max);
+        const double speed = options.path.speed_mm_s, swing = speed * options.path.swing;
+        const std::string mm_s = swing > 0 ? fmt::format("{:.0f}-{:.0f}", speed - swing, speed + swing)
+                                           : fmt::format("{:g}", speed);
         const Peers* peers = options.timely && rate == 1000.0
                                  ? find(surface.finest().frequency, options.path.speed_mm_s)
                                  : nullptr;
         if (markdown_)
-            fmt::print("| {:g} | {:g} | {} | {} | {} | {:.3f} | {} | {} | {} | {} | {} |\n",
-                       options.path.speed_mm_s, rate * 1e-3, sets, levels(surface, r), error, r.step_max,
-                       r.lost, r.fell_through, r.stuck, peers ? peers->chai3d : "", peers ? peers->hapi : "");
+            fmt::print("| {} | {:g} | {} | {} | {} | {:.3f} | {} | {} | {} | {} | {} |\n", mm_s, rate * 1e-3,
+                       sets, levels(surface, r), error, r.step_max, r.lost, r.fell_through, r.stuck,
+                       peers ? peers->chai3d : "", peers ? peers->hapi : "");
         else
-            fmt::print("{:5g} {:4g} {:>14} {:>9}  {:<24} {:7.4f} {:7} {:5} {:7} {:5}  {}\n",
-                       options.path.speed_mm_s, rate * 1e-3, sets, levels(surface, r), error, r.step_max,
-                       r.under, r.lost, r.fell_through, r.stuck,
+            fmt::print("{:>6} {:4g} {:>14} {:>9}  {:<24} {:7.4f} {:7} {:5} {:7} {:5}  {}\n", mm_s,
+                       rate * 1e-3, sets, levels(surface, r), error, r.step_max, r.under, r.lost,
+                       r.fell_through, r.stuck,
                        peers && *peers->chai3d ? fmt::format("{}; {}", peers->chai3d, peers->hapi) : "");
         std::fflush(stdout);
     }
@@ -128,7 +131,7 @@ class Table {
     bool markdown_;
 };
 
-/// Sets for the tick that takes them at every rate; then late ones; then the plain proxy.
+/// Sets for the tick that takes them at every rate; then late ones; then a hand that hurries and lingers.
 std::vector<study::PenetrationOptions> cases(double seconds)
 {
     std::vector<study::PenetrationOptions> all;
@@ -151,6 +154,12 @@ std::vector<study::PenetrationOptions> cases(double seconds)
                 options.feed_every = ms * static_cast<std::uint32_t>(rate_hz / 1000);
             }
         }
+    }
+    for (const std::uint32_t ms : {1U, 4U, 10U}) {
+        study::PenetrationOptions& options = add(250, 1000);
+        options.path.swing = 0.95;
+        options.timely = false;
+        options.feed_every = ms;
     }
     return all;
 }

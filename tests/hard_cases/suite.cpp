@@ -44,11 +44,6 @@ std::span<const std::uint32_t> proxies_of(const Case& hard)
     return std::span(both).first(hard.penetrates ? 2 : 1);
 }
 
-std::uint32_t exact_steps(const phantom_float_ops& ops)
-{
-    return ops.isa == PHANTOM_ISA_FIXED ? 3 : 2; // Newton's there, Halley's elsewhere
-}
-
 double rounding_of(const phantom_float_ops& ops, const Case& hard)
 {
     const double micronewton = 1e-6 / (hard.stiffness * hard.radius); // forces are whole ones
@@ -284,7 +279,7 @@ std::vector<std::string> broken(const Case& hard, const phantom_float_ops& ops, 
                                 const Measured& m)
 {
     std::vector<std::string> out;
-    const bool exact = variant.model == PHANTOM_MODEL_PAPER || variant.newton_steps >= exact_steps(ops);
+    const bool exact = variant.model == PHANTOM_MODEL_PAPER || variant.newton_steps >= exact_steps;
     const auto at = [](const Vec3& p) { return fmt::format("{:.6f}", fmt::join(p, " ")); };
     if (m.not_numbers > 0)
         out.push_back(fmt::format("{} results were no number", m.not_numbers));

@@ -25,7 +25,7 @@ inline constexpr std::array<Variant, 5> variants{{
 
 /// With fewer Newton steps `projected` is bounded and no more. Where triangles are coarse beside R neighbours
 /// do not find the same root at their wall then, and a tip on it counts twice or half.
-std::uint32_t exact_steps(const phantom_float_ops& ops);
+inline constexpr std::uint32_t exact_steps = 2;
 
 /// The proxies that a case is run with: `constrained`, and `paper` too where the tip goes inside.
 std::span<const std::uint32_t> proxies_of(const Case& hard);

@@ -18,16 +18,26 @@ using namespace phantom::hard;
 
 /// Samples are that much farther apart than in the case; where the force is steep it is looked at as closely.
 #ifdef __SANITIZE_ADDRESS__
-constexpr double coarseness = 8; // ten times slower there
+constexpr bool sanitized = true; // ten times slower
+constexpr double coarseness = 12;
 #else
-constexpr double coarseness = 2;
+constexpr bool sanitized = false;
+constexpr double coarseness = 3;
 #endif
+
+/// Is it the same source as another one, only wider?
+bool is_wide(const phantom_float_ops& ops)
+{
+    return ops.isa == PHANTOM_ISA_AVX2 || ops.isa == PHANTOM_ISA_AVX512;
+}
 
 /// All runs of one case.
 void expect_kept(const Case& hard)
 {
     const Course course(hard, coarseness);
     for (const phantom_float_ops* ops : sections()) {
+        if (sanitized && is_wide(*ops))
+            continue;
         for (const Variant& variant : variants) {
             Measured sum;
             for (const std::uint32_t proxy : proxies_of(hard))
@@ -44,8 +54,8 @@ void expect_kept(Kind kind)
     for (const Case& hard : corpus()) {
         if (hard.kind != kind)
             continue;
-        ++cases;
-        expect_kept(hard);
+        if (++cases % 3 == 1 || !sanitized) // the release build has them all
+            expect_kept(hard);
     }
     EXPECT_GT(cases, 2U);
 }
@@ -123,7 +133,7 @@ void expect_seed_kept(std::uint64_t seed, const std::string& fault = {})
 TEST(RandomCases, KeepWhatIsPromised)
 {
     const std::uint64_t first = from_environment("PHANTOM_SEED", 1),
-                        count = from_environment("PHANTOM_SEEDS", 40);
+                        count = from_environment("PHANTOM_SEEDS", 30);
     for (std::uint64_t seed = first; seed < first + count; ++seed)
         expect_seed_kept(seed);
 }

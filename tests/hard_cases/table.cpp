@@ -80,7 +80,7 @@ struct Summary {
     double paper = 0;
     std::uint64_t gaps = 0, doubles = 0, wrong = 0, not_numbers = 0;
 
-    void add(const Case& hard, const phantom_float_ops& ops, const Variant& variant, const Measured& m)
+    void add(const Case& hard, const Variant& variant, const Measured& m)
     {
         excess = std::max(excess, hard.saturates ? 0 : m.excess);
         not_numbers += m.not_numbers;
@@ -88,9 +88,9 @@ struct Summary {
         refused = std::max(refused, m.refused);
         if (variant.model == PHANTOM_MODEL_PAPER && variant.combine == PHANTOM_COMBINE_BOUNDED)
             paper = std::max(paper, m.outside.step);
-        if (variant.model != PHANTOM_MODEL_PROJECTED || variant.newton_steps < exact_steps(ops))
+        if (variant.model != PHANTOM_MODEL_PROJECTED || variant.newton_steps < exact_steps)
             return;
-        double& step = hard.projected_step < measured ? promised : elsewhere;
+        double& step = hard.projected_step < measured && hard.fault.empty() ? promised : elsewhere;
         step = std::max(step, m.outside.step);
         gaps += m.gaps;
         doubles += hard.once ? m.doubles : 0;
@@ -100,22 +100,28 @@ struct Summary {
 void print_markdown()
 {
     std::map<Kind, Summary> kinds;
+    Summary faults;
     for (const Case& hard : corpus()) {
         const Course course(hard, table_coarseness);
-        Summary& summary = kinds[hard.kind];
+        Summary& summary = hard.fault.empty() ? kinds[hard.kind] : faults;
         ++summary.cases;
         for (const Variant& variant : variants)
             for (const phantom_float_ops* ops : sections())
-                summary.add(hard, *ops, variant, run_all_proxies(course, hard, *ops, variant));
+                summary.add(hard, variant, run_all_proxies(course, hard, *ops, variant));
     }
     fmt::print(
         "| | cases | \\|F\\| | step | else | `paper` | gaps | doubles | wrong side | no number | refused |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     const auto step = [](double kr) { return kr > 0 ? fmt::format("{:.3f}", kr) : std::string("–"); };
-    for (const auto& [kind, s] : kinds)
-        fmt::print("| {} | {} | {:.4f} | {} | {} | {} | {} | {} | {} | {} | {} |\n", title(kind), s.cases,
-                   s.excess, step(s.promised), step(s.elsewhere), step(s.paper), s.gaps, s.doubles, s.wrong,
+    const auto print = [&step](const char* name, const Summary& s) {
+        fmt::print("| {} | {} | {:.4f} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, s.cases, s.excess,
+                   step(s.promised), step(s.elsewhere), step(s.paper), s.gaps, s.doubles, s.wrong,
                    s.not_numbers, s.refused);
+    };
+    for (const auto& [kind, summary] : kinds)
+        print(title(kind), summary);
+    if (faults.cases > 0)
+        print("known faults", faults);
 }
 
 void print_head()

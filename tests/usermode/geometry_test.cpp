@@ -214,6 +214,78 @@ TEST_F(Geometry, LossOfCoverageCutsALongCrossfadeShort)
     expect_fade(feeder, 0);
 }
 
+/// Two walls that meet in the y axis, `lift_nm` higher.
+Plane groove(std::uint64_t id, double degrees, std::int64_t lift_nm)
+{
+    Plane out(id);
+    out.patches.clear();
+    const double half = degrees / 2 * M_PI / 180, high = 20, wide = high * std::tan(half), deep = 20;
+    for (const int side : {-1, 1}) {
+        // corners: two at the bottom, two above
+        const double at[4][3] = {
+            {0, -deep, 0}, {0, deep, 0}, {side * wide, -deep, high}, {side * wide, deep, high}};
+        const double normal[3] = {-side * std::cos(half), 0, std::sin(half)};
+        const int faces[2][2][3] = {{{0, 1, 3}, {0, 3, 2}}, {{0, 2, 3}, {0, 3, 1}}}; // left, right
+        for (const auto& corners : faces[side > 0]) {
+            phantom_patch patch{};
+            for (int c = 0; c < 3; ++c) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    patch.vertex_nm[c][axis] = std::int32_t(std::lround(at[corners[c]][axis] * mm));
+                    patch.normal_q30[c][axis] = std::int32_t(std::lround(normal[axis] * PHANTOM_Q30_ONE));
+                }
+                patch.vertex_nm[c][2] += std::int32_t(lift_nm);
+                patch.vertex[c] = std::uint32_t(corners[c] < 2 ? corners[c] : 10 * (side + 2) + corners[c]);
+                patch.neighbour[c] = PHANTOM_PATCH_NONE;
+            }
+            patch.face = std::uint32_t(out.patches.size());
+            out.patches.push_back(patch);
+        }
+    }
+    return out;
+}
+
+/// On all sides of V, caught in the bottom, the new surface is higher: no way along a wall's normal finds it.
+TEST_F(Geometry, GrooveThatRisesAroundTheProxyKeepsIt)
+{
+    for (const double degrees : {5.0, 60.0, 120.0}) {
+        for (const bool level : {true, false}) {
+            for (const std::int64_t lift : {-30'000, 30'000, 300'000}) {
+                for (int aside = -10; aside <= 10; ++aside) {
+                    if (level && lift > 30'000)
+                        continue; // more than its error
+                    create({});
+                    File feeder(machine);
+                    Plane first = groove(1, degrees, 0);
+                    ASSERT_EQ(feeder.submit(first), 0);
+                    ASSERT_EQ(feeder.move(0, 0, 5 * mm), 0);
+                    ASSERT_EQ(feeder.start_unlimited(), 0);
+                    step(30);
+                    go(feeder, -mm);
+                    for (int i = 0; i <= 40; ++i) {
+                        feeder.move(aside * i * mm / 200, 0, -mm); // 2 mm at most
+                        step();
+                    }
+                    ASSERT_TRUE(inside(feeder));
+                    Plane other = groove(2, degrees, lift);
+                    other.header.level = level;
+                    other.header.level_error_nm = level ? 30'000 : 0;
+                    other.objects[0].revision = !level;
+                    ASSERT_EQ(feeder.submit(other), 0);
+                    step(22);
+                    EXPECT_TRUE(inside(feeder)) << degrees << " degrees, level " << level << ", by " << lift
+                                                << " nm, aside " << aside;
+                    // up the wall, as far as the tip is past the bottom's wedge
+                    const double half = degrees / 2 * M_PI / 180, x = aside * double(mm) / 5;
+                    const double up =
+                        std::max(0.0, std::abs(x) * std::sin(half) - double(mm + lift) * std::cos(half));
+                    EXPECT_NEAR(double(feeder.status().proxy_nm[2]), double(lift) + up * std::cos(half), 50);
+                    EXPECT_NEAR(std::abs(double(feeder.status().proxy_nm[0])), up * std::sin(half), 50);
+                }
+            }
+        }
+    }
+}
+
 /// Another object's revision, or a level, must not take a tip in that is between two walls.
 TEST_F(Geometry, TipInASlotNarrowerThanTheContactRadiusStaysOutside)
 {

@@ -138,7 +138,9 @@ feeder::Path spiral_path(const SpiralOptions& options)
     const auto ticks = static_cast<std::size_t>(options.seconds * options.rate_hz);
     for (std::size_t i = 0; i < ticks; ++i) {
         const double time_s = static_cast<double>(i) / options.rate_hz;
-        double gone = std::fmod(options.speed_mm_s * time_s, 2 * way.back());
+        const double swung = options.swing * (1 - std::cos(2 * std::numbers::pi * time_s / options.swing_s)) *
+                             options.swing_s / (2 * std::numbers::pi);
+        double gone = std::fmod(options.speed_mm_s * (time_s + swung), 2 * way.back());
         gone = std::min(gone, 2 * way.back() - gone);
         const auto at =
             static_cast<std::size_t>(std::upper_bound(way.begin(), way.end() - 1, gone) - way.begin());

@@ -23,6 +23,8 @@ Result<mesh::Mesh> bumpy_sphere(unsigned frequency);
 struct SpiralOptions {
     double depth_mm = 3.0; ///< nominal, under r = 50 mm: the tip passes under the valleys of the bumps
     double speed_mm_s = 100.0;
+    double swing = 0.0;   ///< the speed goes up and down by that part of it,
+    double swing_s = 0.4; ///< once in this time
     double seconds = 20.0;
     double rate_hz = 1000.0;
     double turns = 20.0; ///< from pole to pole; there and back again

@@ -107,6 +107,7 @@ class Run {
         const Result<feeder::FeedReport> report = feeders_[level]->feed(at, inside_ ? proxy_ : at, inside_);
         if (!report)
             return report.error();
+        result_.level_changes += inside_ && level != level_;
         level_ = level;
         result_.patches_max = std::max(result_.patches_max, report->patches);
         return success();

@@ -33,6 +33,7 @@ struct PenetrationResult {
     std::uint64_t stuck = 0;        ///< proxy farther from the tip than the nearest point by a mm and more
     /// Of the sets that ticks under the surface used, by level.
     std::vector<std::uint64_t> level_ticks;
+    std::uint64_t level_changes = 0; ///< sets of another level than the one before, under the surface
     std::uint32_t patches_max = 0;
     /// The force, sent, from k (R n + V - P) at the point V of the finest level nearest to the tip P, N.
     double error_p50 = 0, error_p99 = 0, error_max = 0;

@@ -112,6 +112,47 @@ void time_float_ticks(const phantom_float_ops& ops, const phantom_model& model, 
     }
 }
 
+/// Large faces one under the other, 10 um apart, their normals turned outward: a tip 1 mm over the
+/// first is in contact with all of them.
+device::PatchSet stacked_set(std::uint32_t count)
+{
+    device::PatchSet set;
+    phantom_material material{};
+    material.stiffness_mn_mm = 1000;
+    material.radius_nm = 3'000'000;
+    set.materials.push_back(material);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        phantom_patch patch{};
+        const std::array<Vec3, 3> corners{Vec3{2, 0, -0.01 * i}, Vec3{-1, 1.7, -0.01 * i},
+                                          Vec3{-1, -1.7, -0.01 * i}};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 normal = unit(Vec3{0.1 * corners[k][0], 0.1 * corners[k][1], 1.0});
+            for (int axis = 0; axis < 3; ++axis) {
+                patch.vertex_nm[k][axis] = static_cast<s32>(std::llround(corners[k][axis] * 1e6));
+                patch.normal_q30[k][axis] = static_cast<s32>(std::llround(normal[axis] * PHANTOM_Q30_ONE));
+            }
+            patch.vertex[k] = 3 * i + static_cast<std::uint32_t>(k);
+            patch.neighbour[k] = PHANTOM_PATCH_NONE;
+        }
+        patch.face = i;
+        set.patches.push_back(patch);
+    }
+    set.header.radius_nm = 100'000'000;
+    return set;
+}
+
+Distribution time_stacked(const phantom_float_ops& ops, const phantom_model& model, std::uint32_t count)
+{
+    const device::PatchSet set = stacked_set(count);
+    double microseconds = 0, contacts = 0;
+    const FloatSet floats = prepared(ops, set, microseconds);
+    std::mt19937_64 random(3);
+    std::vector<double> samples;
+    for (std::size_t i = 0; i < sets; ++i)
+        time_float_ticks(ops, model, set, floats, wander({0, 0, 1}, random), samples, contacts);
+    return Distribution::of(std::move(samples));
+}
+
 Status time_whole_ticks(device::Device& device, const std::vector<Vec3>& tips, std::vector<double>& samples)
 {
     for (const Vec3& tip : tips) {
@@ -151,20 +192,21 @@ std::vector<std::uint32_t> tick_sections()
 {
     std::vector<std::uint32_t> out;
     for (const phantom_float_ops* const* at = phantom_um_sections(); *at; ++at)
-        if ((*at)->isa != PHANTOM_ISA_DOUBLE && (*at)->isa != PHANTOM_ISA_FIXED)
+        if ((*at)->isa != PHANTOM_ISA_DOUBLE)
             out.push_back((*at)->isa);
     return out;
 }
 
-Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
-                              const phantom_model& model, std::uint32_t isa, std::uint32_t budget)
+Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree, phantom_model model,
+                              std::uint32_t isa, std::uint32_t budget)
 {
     const phantom_float_ops* const ops = ops_of(isa);
     if (!ops)
         return Error{"", fmt::format("this processor has no {}", device::isa_name(isa))};
     device::UsermodeOptions usermode;
     usermode.virtual_clock = true;
-    usermode.isa = isa;
+    usermode.isa = isa == PHANTOM_ISA_FIXED ? PHANTOM_ISA_NONE : isa;
+    model.arith = isa == PHANTOM_ISA_FIXED ? PHANTOM_ARITH_FIXED : PHANTOM_ARITH_FLOAT;
     Result<device::Device> device = device::Device::open_usermode(usermode);
     if (!device)
         return device.error();
@@ -206,6 +248,8 @@ Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14
     }
     cost.contacts /= std::max<std::size_t>(1, float_ns.size());
     cost.float_ns = Distribution::of(std::move(float_ns));
+    cost.stacked_ns = time_stacked(*ops, model, cost.patches);
+    cost.set_bytes = ops->set_bytes(cost.patches);
     cost.tick_ns = Distribution::of(std::move(tick_ns));
     cost.prepare_us = Distribution::of(std::move(prepare_us));
     return cost;

@@ -17,21 +17,23 @@ namespace phantom::study {
 /// Points half a contact radius above the middles of faces spread over the scene. Repeatable.
 std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed);
 
-/// The instruction sets of float32 that this processor has, the best first (PHANTOM_ISA_...).
+/// What a tick may be computed with here (PHANTOM_ISA_...): float32, the best first, and FIXED.
 std::vector<std::uint32_t> tick_sections();
 
 struct TickCost {
     std::uint32_t isa = PHANTOM_ISA_NONE;
     std::uint32_t patches = 0; ///< in the sets, at most
     double contacts = 0;       ///< per tick, on average
-    Distribution float_ns;     ///< the float section alone: contact, proxy, effects
+    Distribution float_ns;     ///< the section alone: contact, proxy, effects
+    Distribution stacked_ns;   ///< the same where as many patches lie over one another, all in contact
+    std::size_t set_bytes = 0; ///< of as many patches, with what a tick writes
     Distribution tick_ns;      ///< the whole tick, stepped from outside on a virtual clock
     Distribution prepare_us;   ///< converting one set, all its float sections
 };
 
 /// Sets of `budget` triangles round points near the surface; in each the tip moves by small steps in
 /// contact. isa: one of tick_sections(), else it fails.
-Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree,
-                              const phantom_model& model, std::uint32_t isa, std::uint32_t budget);
+Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree, phantom_model model,
+                              std::uint32_t isa, std::uint32_t budget);
 
 } // namespace phantom::study

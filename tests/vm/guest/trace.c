@@ -133,13 +133,14 @@ static struct counts count_records(const struct hand* hand)
 }
 
 /* One run, from START's ramp to STOP's. */
-static void record(uint32_t model, uint32_t steps, uint32_t proxy, uint32_t rate_hz, uint32_t flags)
+static void record_with(uint32_t arith, uint32_t model, uint32_t steps, uint32_t proxy, uint32_t rate_hz,
+                        uint32_t flags)
 {
     const struct phantom_model words = {.model = model,
                                         .newton_steps = steps,
                                         .combine = PHANTOM_COMBINE_BOUNDED,
                                         .proxy = proxy,
-                                        .arith = PHANTOM_ARITH_FLOAT};
+                                        .arith = arith};
     const struct phantom_start limits = {.flags = flags, .ramp_ms = RAMP_MS, .stale_ms = 1000};
     struct counts counts;
     struct hand hand;
@@ -169,6 +170,11 @@ static void record(uint32_t model, uint32_t steps, uint32_t proxy, uint32_t rate
               counts.ramping, hand.sets);
 }
 
+static void record(uint32_t model, uint32_t steps, uint32_t proxy, uint32_t rate_hz, uint32_t flags)
+{
+    record_with(PHANTOM_ARITH_FLOAT, model, steps, proxy, rate_hz, flags);
+}
+
 VM_TEST(trace, of_the_projected_model, 60)
 {
     record(PHANTOM_MODEL_PROJECTED, 2, PHANTOM_PROXY_PAPER, 3000, 0);
@@ -190,6 +196,12 @@ VM_TEST(trace, of_the_constrained_proxy, 60)
     if (!(info.features & PHANTOM_FEATURE_PROXY_CONSTRAINED))
         vm_skip("the module does not offer proxy=constrained");
     record(PHANTOM_MODEL_PROJECTED, 3, PHANTOM_PROXY_CONSTRAINED, 1000, 0);
+}
+
+/* In integers, of which user mode must make the same. */
+VM_TEST(trace, of_fixed_point, 60)
+{
+    record_with(PHANTOM_ARITH_FIXED, PHANTOM_MODEL_PROJECTED, 2, PHANTOM_PROXY_CONSTRAINED, 1000, 0);
 }
 
 /* Two runs, and in the first whatever can be changed while it goes on: rate, model, a fault and its end. */
