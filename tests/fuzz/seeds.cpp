@@ -12,6 +12,7 @@
 
 #include "phantom_abi.h"
 #include "script.hpp"
+#include "shapes.hpp"
 #include "subject.hpp"
 
 namespace {
@@ -39,6 +40,7 @@ class Writer {
     Writer& operation(Operation o) { return byte(int(o)); }
 
     enum ShapeKind { Triangle, Sliver, Grid, Ball, Box, EdgeFan, CornerFan };
+    Writer& rims() { return operation(Operation::Shape).byte(shape_rims); }
     enum NormalRule { Plane, Radial, Bent, Any };
     Writer& shape(ShapeKind kind) { return operation(Operation::Shape).byte(kind); }
     /// A square of 2 x 2 x `side`^2 faces round the origin; relief in steps for each corner's byte.
@@ -174,6 +176,14 @@ std::vector<Scene> scenes()
              w.ball(2, false, 4000, 128);
              for (int i = 0; i < 3; ++i)
                  w.operation(Operation::Repeat).byte(0).point(1000 * i, 300, 0);
+         }},
+        {"plate-with-a-rim", 8, [](Writer& w) { w.grid(2, 4000, Writer::Plane).rims(); }},
+        {"bumps-with-a-rim", 18, [=](Writer& w) { w.grid(3, 2000, Writer::Plane, bumps).rims(); }},
+        {"open-ball-smaller-than-its-radius", 13, [](Writer& w) { w.ball(1, false, 1500, 13).rims(); }},
+        {"two-plates-with-rims", 16,
+         [](Writer& w) {
+             w.grid(2, 4000, Writer::Plane).rims();
+             w.operation(Operation::Repeat).byte(0).point(3000, 100, -300).rims();
          }},
         {"damped-stiff", 32, [](Writer& w) { w.material(120, 168, 90).ball(1, false, 9000, 32); }},
     };

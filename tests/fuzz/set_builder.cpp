@@ -65,6 +65,7 @@ void SetBuilder::clear()
 {
     faces_.clear();
     fans_.clear();
+    rims_.clear();
     numbers_.clear();
     next_number_ = next_face_ = material_ = object_ = 0;
     phantom_material material{};
@@ -129,6 +130,33 @@ void SetBuilder::fan(const std::array<Point, 3>& corner, const std::array<Direct
     fans_.back().face = PHANTOM_PATCH_NONE;
     fans_.back().kind =
         corner[0] == corner[1] && corner[1] == corner[2] ? PHANTOM_PATCH_CORNER : PHANTOM_PATCH_EDGE;
+}
+
+void SetBuilder::end_surface()
+{
+    const std::uint32_t surface = std::uint32_t(rims_.size()) + 1;
+    std::map<std::pair<Point, Point>, const phantom_patch*> edges;
+    const auto corner = [](const phantom_patch& patch, std::size_t i) {
+        const auto& x = patch.vertex_nm[i % 3];
+        return Point{x[0], x[1], x[2]};
+    };
+    for (phantom_patch& face : faces_) {
+        face.surface = surface;
+        for (std::size_t i = 0; i < 3; ++i)
+            edges.emplace(std::pair{corner(face, i), corner(face, i + 1)}, &face);
+    }
+    for (phantom_patch& fan : fans_)
+        fan.surface = surface;
+    for (const auto& [ends, face] : edges) {
+        const auto& [from, to] = ends;
+        if (from == to || edges.contains({to, from}) || patch_count() >= patches_max)
+            continue;
+        append(rims_, {from, to, to}, {Direction{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+        rims_.back().face = PHANTOM_PATCH_NONE;
+        rims_.back().kind = PHANTOM_PATCH_RIM;
+        rims_.back().surface = surface;
+        rims_.back().object = face->object;
+    }
 }
 
 void SetBuilder::material(const phantom_material& material)
@@ -240,7 +268,8 @@ phantom_set& SetBuilder::request(std::uint64_t id)
     for (const phantom_material& material : materials_)
         header_.effects |= material.effects;
     sent_patches_ = {};
-    std::copy(fans_.begin(), fans_.end(), std::copy(faces_.begin(), faces_.end(), sent_patches_.begin()));
+    const auto fans = std::copy(faces_.begin(), faces_.end(), sent_patches_.begin());
+    std::copy(rims_.begin(), rims_.end(), std::copy(fans_.begin(), fans_.end(), fans));
     sent_materials_ = {};
     std::copy(materials_.begin(), materials_.end(), sent_materials_.begin());
     sent_objects_ = {};

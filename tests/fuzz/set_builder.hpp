@@ -37,6 +37,8 @@ class SetBuilder {
     /// Over an edge (two corners equal) or a vertex (all three); turned so that its shell has not folded
     /// over.
     void fan(const std::array<Point, 3>& corner, const std::array<Direction, 3>& normal);
+    /// The faces so far are one surface; rims where it is open, as many as there is room for.
+    void end_surface();
     /// Faces added from now on are of this material or object. The 17th is the first again.
     void material(const phantom_material& material);
     void object(const phantom_object& object);
@@ -48,7 +50,7 @@ class SetBuilder {
     void repeat(Range faces, const Point& by, bool flipped);
 
     [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
-    [[nodiscard]] std::size_t patch_count() const { return faces_.size() + fans_.size(); }
+    [[nodiscard]] std::size_t patch_count() const { return faces_.size() + fans_.size() + rims_.size(); }
     /// A point over a face at those barycentric coordinates, along its normals.
     [[nodiscard]] Point over(std::size_t face, double b0, double b1, double height_nm) const;
     /// Contact radius of a face's material; of the material in use where there is no such face.
@@ -67,7 +69,7 @@ class SetBuilder {
                 const std::array<Direction, 3>& normal);
     void link_neighbours();
 
-    std::vector<phantom_patch> faces_, fans_;
+    std::vector<phantom_patch> faces_, fans_, rims_;
     std::vector<phantom_material> materials_;
     std::vector<phantom_object> objects_;
     std::map<Point, std::uint32_t> numbers_;

@@ -254,7 +254,11 @@ Range add_shape(Bytes& in, const Ruler& ruler, SetBuilder& to)
     constexpr Maker makers[shape_kinds] = {add_free_triangle, add_sliver,   add_grid,      add_ball,
                                            add_box,           add_edge_fan, add_corner_fan};
     const std::size_t begin = to.face_count();
-    makers[in.choose(shape_kinds)](in, ruler, to);
+    const std::uint8_t kind = in.byte();
+    if (kind == shape_rims)
+        to.end_surface();
+    else
+        makers[kind % shape_kinds](in, ruler, to);
     return {begin, to.face_count()};
 }
 

@@ -19,6 +19,8 @@ struct Ruler {
 /// One of the shapes, whichever the bytes say. What it added to the faces.
 Range add_shape(Bytes& in, const Ruler& ruler, SetBuilder& to);
 constexpr std::uint32_t shape_kinds = 7;
+/// In place of a kind: the faces so far end at rims.
+constexpr std::uint8_t shape_rims = 255;
 
 /// Four bytes: stiffness, radius and damping over their whole range, on a logarithmic scale.
 phantom_material read_material(Bytes& in);

@@ -152,7 +152,8 @@ std::vector<Case> doubled()
     out.back().convex = true;
     out.back().once = false;
     out.push_back(on_a_sphere("faces back to back", both, "from outside as the front faces alone"));
-    out.push_back(on_a_sphere("every fifth face flipped", some_flipped, "a hole where the face is flipped"));
+    out.push_back(on_a_sphere("every fifth face flipped", with_rims(some_flipped),
+                              "a hole where the face is flipped; the force fades before it"));
     return out;
 }
 
@@ -217,14 +218,15 @@ std::vector<Case> degenerate_cases()
 
     for (Case& c : doubled())
         out.push_back(std::move(c));
-    out.push_back(faulty("three sheets on one edge", sheets({0, 120, 250}), 1,
-                         {{{{-1, 0.3, 0.4}, {1, 0.3, 0.4}}}, {{{0, 0.1, 0.8}, {0, 0.1, -0.5}, {1, 0, 0.5}}}},
-                         "each sheet from its own side; no fan between more than two"));
     out.push_back(
-        faulty("a T-junction", t_junction(), 1,
-               {{{{-1, 0.3, 0.4}, {1, -0.3, 0.4}}}, {{{0, 0, 0.8}, {0, 0, 0}, {0, 0, -0.3}}}},
-               "flat, `paper` does not feel it; `projected` for some 0.1 um beside the lone vertex"));
-    out.back().paper_step = smooth_step;
+        faulty("three sheets on one edge", with_rims(sheets({0, 120, 250})), 1,
+               {{{{-1, 0.3, 0.4}, {1, 0.3, 0.4}}}, {{{0, 0.1, 0.8}, {0, 0.1, -0.5}, {1, 0, 0.5}}}},
+               "each sheet from its own side, all run the same way along the edge: each fades before it"));
+    out.back().projected_step = smooth_step;
+    out.push_back(faulty("a T-junction", with_rims(t_junction()), 1,
+                         {{{{-1, 0.3, 0.4}, {1, -0.3, 0.4}}}, {{{0, 0, 0.8}, {0, 0, 0}, {0, 0, -0.3}}}},
+                         "no edge goes on from the other's points: the force fades before the seam"));
+    out.back().paper_step = out.back().projected_step = smooth_step;
     out.push_back(faulty("over the rim of an open sheet", with_rims(sheets({0})), 1,
                          {{{{3, 0.2, 0.3}, {6, 0.1, 0.3}}}, {{{4.8, 0.2, 0.3}, {4.8, 0, -0.3}, {5.5, 0, 0}}}},
                          "fades over the last R before the rim; `two_sided` closes the sheet"));

@@ -141,7 +141,7 @@ Case low_over_an_edges_end()
     t.radius = 0.14565;
     Case c = over("fan over an edge of 10 mm, low over its end", {t}, 0.14565,
                   {{{add(tip, {0, 0, -0.002}), tip, add(tip, {0.002, 0, 0.005})}}});
-    c.rigid = false; // it is as narrow as its height
+    c.rigid = false;                            // it is as narrow as its height
     c.projected_step = c.paper_step = measured; // alone: it ends at its walls
     c.jump = 0.02;
     return c;

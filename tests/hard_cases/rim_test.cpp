@@ -168,6 +168,27 @@ TEST(Rim, ThePlateGivesExactlyThePartThatItsDistanceIsOfR)
     }
 }
 
+/// Over the ridge of a roof, where fans give the force.
+TEST(Rim, FansFadeAsFacesDo)
+{
+    const Triangles roof = opened(field(10, 5, [](double x, double) { return -std::abs(x); }), 30);
+    ASSERT_TRUE(std::any_of(roof.begin(), roof.end(), [](const auto& t) { return t.fan; }));
+    for (const phantom_float_ops* ops : sections()) {
+        for (const std::uint32_t model : {PHANTOM_MODEL_PAPER, PHANTOM_MODEL_PROJECTED}) {
+            Contact contact(*ops, roof, settings_of(model, PHANTOM_PROXY_OFF));
+            for (int i = 1; i <= 1300; ++i) {
+                contact.restart();
+                const double away = i * 1e-3;
+                const Touch touch = contact.tick({0.01, 5 - away, 0.3});
+                const double height = std::hypot(0.01, 0.3);
+                ASSERT_NEAR(length(touch.force), stiffness * (radius - height) * std::min(1.0, away),
+                            rounding_n)
+                    << ops->name << " model " << model << ", " << away << " mm from the rim";
+            }
+        }
+    }
+}
+
 TEST(Rim, UnderTheSurfaceTheProxysDistanceDecides)
 {
     const Triangles plate = opened(field(10, 5, flat));
