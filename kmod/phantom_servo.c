@@ -122,6 +122,7 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		.materials = copy->materials,
 		.patch_count = slot->patch_count,
 		.face_count = copy->face_count,
+		.rim_count = copy->rim_count,
 		.material_count = copy->header.material_count,
 	};
 

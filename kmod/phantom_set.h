@@ -63,7 +63,9 @@ struct phantom_set_copy {
 	struct phantom_object objects[PHANTOM_OBJECTS_MAX];
 	struct phantom_patch *patches;
 	u32 capacity; /* of patches */
-	u32 face_count; /* patches of kind FACE: they come first. By phantom_set_check_arrays() */
+	/* by phantom_set_check_arrays() */
+	u32 face_count; /* patches of kind FACE: they come first */
+	u32 rim_count; /* patches of kind RIM: they come last */
 };
 
 struct phantom_sets {

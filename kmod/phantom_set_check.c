@@ -64,7 +64,7 @@ static bool phantom_check_same(const s32 a_nm[3], const s32 b_nm[3])
 	return a_nm[0] == b_nm[0] && a_nm[1] == b_nm[1] && a_nm[2] == b_nm[2];
 }
 
-/* A face may have neighbours among the faces; a fan coincides where its kind says, and has none. */
+/* A face may have neighbours among the faces; a fan or rim coincides where its kind says, and has none. */
 static bool phantom_check_kind(const struct phantom_patch *patch, u32 face_count)
 {
 	const s32(*vertex_nm)[3] = patch->vertex_nm;
@@ -82,9 +82,19 @@ static bool phantom_check_kind(const struct phantom_patch *patch, u32 face_count
 		if (patch->neighbour[i] != PHANTOM_PATCH_NONE)
 			return false;
 	}
-	return patch->face == PHANTOM_PATCH_NONE &&
-	       ((patch->kind == PHANTOM_PATCH_EDGE && same == 1) ||
-		(patch->kind == PHANTOM_PATCH_CORNER && same == 3));
+	if (patch->face != PHANTOM_PATCH_NONE)
+		return false;
+	switch (patch->kind) {
+	case PHANTOM_PATCH_EDGE:
+		return same == 1;
+	case PHANTOM_PATCH_CORNER:
+		return same == 3;
+	case PHANTOM_PATCH_RIM:
+		return same == 1 && phantom_check_same(vertex_nm[1], vertex_nm[2]) &&
+		       patch->surface;
+	default:
+		return false;
+	}
 }
 
 static bool phantom_check_patch(const struct phantom_patch *patch, const struct phantom_set *header)
@@ -97,7 +107,7 @@ static bool phantom_check_patch(const struct phantom_patch *patch, const struct 
 			return false;
 	}
 	return patch->object < header->object_count && patch->material < header->material_count &&
-	       !patch->reserved[0] && !patch->reserved[1];
+	       !patch->reserved;
 }
 
 static bool phantom_check_material(const struct phantom_material *material)
@@ -126,21 +136,27 @@ static bool phantom_check_object(const struct phantom_object *object)
 	return object->rotation_q30[0] == PHANTOM_Q30_ONE;
 }
 
-/* Faces first, then fans. */
+/* Faces first, then fans, then rims. */
 static bool phantom_check_patches(struct phantom_set_copy *copy)
 {
 	const struct phantom_set *header = &copy->header;
-	u32 i, faces = 0;
+	u32 i, faces = 0, rims = 0;
 
 	while (faces < header->patch_count && copy->patches[faces].kind == PHANTOM_PATCH_FACE)
 		faces++;
+	while (rims < header->patch_count - faces &&
+	       copy->patches[header->patch_count - 1 - rims].kind == PHANTOM_PATCH_RIM)
+		rims++;
 	copy->face_count = faces;
+	copy->rim_count = rims;
 	for (i = 0; i < header->patch_count; i++) {
 		const struct phantom_patch *patch = &copy->patches[i];
 
 		if (!phantom_check_patch(patch, header) || !phantom_check_kind(patch, faces))
 			return false;
 		if (i >= faces && patch->kind == PHANTOM_PATCH_FACE)
+			return false;
+		if (i < header->patch_count - rims && patch->kind == PHANTOM_PATCH_RIM)
 			return false;
 	}
 	return true;

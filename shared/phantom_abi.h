@@ -52,7 +52,8 @@
  *   Conversions saturate, never wrap, and are counted (status->saturated).
  *
  * COVERAGE
- *   A set promises: every triangle of the scene within radius_nm of centre_nm is in it. Outside
+ *   A set promises: every triangle of the scene within radius_nm of centre_nm is in it, and every rim
+ *   within R of those that are. Outside
  *   the surface the tick needs coverage of the ball of the set's largest contact radius round the
  *   tip; inside it needs tip and proxy covered. Where the promise does not reach, no force is
  *   computed from the part that is there: the last force fades to zero within PHANTOM_FADE_NS,
@@ -118,9 +119,10 @@
  *                          than the last one since open(), unknown flag, effect or kind, effects
  *                          that are not the union of the materials', damping without its effect,
  *                          a normal that is not of unit length to 2^-10, a pose that is not the
- *                          identity (v1), a face after a fan patch, a fan whose corners do
- *                          not coincide as its kind says, or that has a face number or
- *                          neighbours, a neighbour that is no face, an object number twice,
+ *                          identity (v1), a face after a fan patch, a face or fan after a
+ *                          rim, a fan or rim whose corners do not coincide as its kind says, or
+ *                          that has a face number or neighbours, a rim of surface 0, a
+ *                          neighbour that is no face, an object number twice,
  *                          reserved not zero, radius 0 in a material, vertices or centre
  *                          beyond +-1 m of the origin, the origin beyond
  *                          PHANTOM_POSITION_MAX_NM
@@ -185,6 +187,8 @@
 #define PHANTOM_FEATURE_SIM_MOVE (1ULL << 8)
 #define PHANTOM_FEATURE_FANS (1ULL << 9) /* patches of kind EDGE and CORNER */
 #define PHANTOM_FEATURE_CROSSFADE (1ULL << 10) /* start.crossfade_ms; without it that must be 0 */
+/* patches of kind RIM, and patch.surface; without it that must be 0 */
+#define PHANTOM_FEATURE_RIMS (1ULL << 11)
 
 /* ---- effects (material.effects, set.effects) ----------------------------- */
 #define PHANTOM_EFFECT_DAMPING (1U << 0) /* normal damping; never pulls */
@@ -303,6 +307,15 @@ struct phantom_start {
  */
 #define PHANTOM_PATCH_EDGE 1 /* fan over an edge: two of the corners are the same point */
 #define PHANTOM_PATCH_CORNER 2 /* fan over a vertex: all three are */
+/*
+ * Where an open surface ends: no face goes on from this edge with the same outside. No patch to
+ * touch: the force of a contact is multiplied by clamp(d / R, 0, 1), d the distance of its foot (of the
+ * proxy, when inside) from the nearest rim of its own surface, R its contact radius. So the force
+ * fades over the last R before the rim, and a tip that slides off feels no step. In a set rims follow
+ * all fans; corners a, b, b, a and b apart; face number and neighbours are PHANTOM_PATCH_NONE; the
+ * normals are any.
+ */
+#define PHANTOM_PATCH_RIM 3
 struct phantom_patch {
 	__s32 vertex_nm[3][3]; /* [corner][axis], relative to the set's origin */
 	__s32 normal_q30[3][3]; /* [corner][axis], unit */
@@ -312,7 +325,8 @@ struct phantom_patch {
 	__u32 object; /* index into the set's objects */
 	__u32 material; /* index into the set's materials */
 	__u32 kind; /* PHANTOM_PATCH_... */
-	__u32 reserved[2];
+	__u32 surface; /* the open surface it is part of, unique in the scene; 0: no rim concerns it */
+	__u32 reserved;
 };
 
 struct phantom_material {

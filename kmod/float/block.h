@@ -66,6 +66,15 @@ struct block {
 	index_row face; /* phantom_patch.face */
 	index_row vertex[3]; /* phantom_patch.vertex */
 	index_row material;
+	index_row surface; /* phantom_patch.surface */
+};
+
+/* Sixteen edges at which open surfaces end. Lanes without one have surface 0, which is none's. */
+struct rim_block {
+	nm_row from[3]; /* [axis], one end */
+	struct row3 along; /* unit, towards the other end */
+	real_row length; /* mm */
+	nm_row surface; /* phantom_patch.surface; to be compared only */
 };
 
 /* What a tick of 64 patches reads stays in the first-level cache (32 kB), its own stack beside it. */
@@ -119,6 +128,7 @@ struct phantom_float_set {
 	u32 patch_count;
 	u32 block_count; /* of faces */
 	u32 fan_block_count; /* they follow; only the shell has a use for them */
+	u32 rim_block_count; /* struct rim_block, they follow */
 	u32 material_count;
 	u32 refused;
 	u64 scratch_offset; /* from the set's begin, bytes: union scratch of each block, shell_scratch */
@@ -140,6 +150,11 @@ struct phantom_float_set {
 LANES_INLINE real rounding_mm(const struct phantom_float_set *set)
 {
 	return mul(REAL(1e-6), REAL(1) + set->extent + set->radius);
+}
+
+LANES_INLINE struct rim_block *set_rims(const struct phantom_float_set *set)
+{
+	return (struct rim_block *)&set->blocks[set->block_count + set->fan_block_count];
 }
 
 LANES_INLINE struct paper_step *scratch_paper(const struct phantom_float_set *set)

@@ -29,6 +29,7 @@
 #include "crossing.h"
 #include "paper.h"
 #include "combine.h"
+#include "rim.h"
 
 /* V's face is looked for again within this distance if the set has lost its number, mm. */
 #define PROXY_REFIND_MM REAL(1e-3)
@@ -285,6 +286,7 @@ static inline void penetration_force(const struct phantom_float_job *job, u32 pa
 	out->force = real3_scale(out->force, material->stiffness);
 	out->damping = material->damping;
 	out->contacts = 1;
+	rim_fade_held(job->set, patch, job->proxy_nm, out);
 }
 
 #endif /* PHANTOM_FLOAT_PENETRATION_H */

@@ -39,6 +39,7 @@ struct phantom_float_prepare {
 	const struct phantom_material *materials;
 	u32 patch_count;
 	u32 face_count; /* the first of them; fans (PHANTOM_PATCH_EDGE, _CORNER) follow */
+	u32 rim_count; /* the last of them (PHANTOM_PATCH_RIM) */
 	u32 material_count;
 	u32 first; /* this piece: patches first ... first + count - 1; first is a multiple of 16 */
 	u32 count; /* <= PHANTOM_FLOAT_PREPARE_MAX */

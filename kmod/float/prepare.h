@@ -359,6 +359,11 @@ static inline u32 blocks_for(u32 patch_count)
 	return (patch_count + PHANTOM_BLOCK - 1) / PHANTOM_BLOCK;
 }
 
+static inline u32 fan_count(const struct phantom_float_prepare *prepare)
+{
+	return prepare->patch_count - prepare->face_count - prepare->rim_count;
+}
+
 /* Fans begin a block of their own. */
 static inline u32 lane_of_patch(const struct phantom_float_prepare *prepare, u32 index)
 {
@@ -379,10 +384,13 @@ static inline void prepare_header(const struct phantom_float_prepare *prepare)
 
 	set->patch_count = prepare->patch_count;
 	set->block_count = blocks_for(prepare->face_count);
-	set->fan_block_count = blocks_for(prepare->patch_count - prepare->face_count);
+	set->fan_block_count = blocks_for(fan_count(prepare));
+	set->rim_block_count = blocks_for(prepare->rim_count);
 	set->material_count = prepare->material_count;
-	set->scratch_offset = sizeof(*set) +
-			      (u64)(set->block_count + set->fan_block_count) * sizeof(struct block);
+	set->scratch_offset =
+		sizeof(*set) +
+		(u64)(set->block_count + set->fan_block_count) * sizeof(struct block) +
+		(u64)set->rim_block_count * sizeof(struct rim_block);
 	set->extent = 0;
 	set->radius = 0;
 	for (i = 0; i < prepare->material_count; i++) {
@@ -439,6 +447,7 @@ static inline void prepare_one(struct phantom_float_prepare *prepare, u32 index)
 				   WIDE(1e-6));
 	block->face[lane] = patch->face;
 	block->material[lane] = patch->material;
+	block->surface[lane] = patch->surface;
 	for (i = 0; i < 3; i++)
 		block->vertex[i][lane] = patch->vertex[i];
 	if ((patch->kind == PHANTOM_PATCH_FACE ? face_measure(patch, &geometry)
@@ -463,32 +472,77 @@ static inline void prepare_padding(struct phantom_float_set *set, u32 at)
 		prepare_idle(block, lane);
 		block->face[lane] = PHANTOM_PATCH_NONE;
 		block->material[lane] = 0;
+		block->surface[lane] = 0;
 		for (i = 0; i < 3; i++)
 			block->vertex[i][lane] = PHANTOM_PATCH_NONE;
+	}
+}
+
+static inline void rim_set(struct rim_block *block, u32 lane, const s32 from_nm[3], u32 surface)
+{
+	u32 step = lane / PHANTOM_LANES, l = lane % PHANTOM_LANES, axis;
+
+	for (axis = 0; axis < 3; axis++)
+		block->from[axis][step][l] = (coordinate)from_nm[axis];
+	block->surface[step][l] = (coordinate)(s32)surface;
+}
+
+/* A rim, in the lane that is its own; no kind of patch is computed so easily: none is refused. */
+static inline void prepare_rim(const struct phantom_float_prepare *prepare, u32 index)
+{
+	const struct phantom_patch *patch = &prepare->patches[index];
+	u32 at = index - (prepare->patch_count - prepare->rim_count), lane = at % PHANTOM_BLOCK;
+	struct rim_block *block = &set_rims(prepare->set)[at / PHANTOM_BLOCK];
+	struct wide3 edge = edge_nm(patch, 0, 1);
+	wide length_nm = wide3_length(edge);
+	wide inverse = wide_less(WIDE(0), length_nm) ? wide_inverse(length_nm) : WIDE(0);
+
+	rim_set(block, lane, patch->vertex_nm[0], patch->surface);
+	row3_set(&block->along, lane, wide3_scale(edge, inverse));
+	row_set(block->length, lane, wide_mul(length_nm, WIDE(1e-6)));
+}
+
+/* The rest of the last block of rims. */
+static inline void prepare_rim_padding(const struct phantom_float_prepare *prepare)
+{
+	static const s32 nowhere[3] = {0, 0, 0};
+	u32 at;
+
+	for (at = prepare->rim_count; at % PHANTOM_BLOCK; at++) {
+		struct rim_block *block = &set_rims(prepare->set)[at / PHANTOM_BLOCK];
+		u32 lane = at % PHANTOM_BLOCK;
+
+		rim_set(block, lane, nowhere, 0);
+		row3_set(&block->along, lane, wide3_from_integers(0, 0, 0));
+		row_set(block->length, lane, WIDE(0));
 	}
 }
 
 static void section_prepare(struct phantom_float_prepare *prepare)
 {
 	u32 index, end = prepare->first + prepare->count;
+	u32 rims = prepare->patch_count - prepare->rim_count;
 
 	if (prepare->first == 0)
 		prepare_header(prepare);
-	for (index = prepare->first; index < end; index++)
-		prepare_one(prepare, index);
+	for (index = prepare->first; index < end; index++) {
+		if (index < rims)
+			prepare_one(prepare, index);
+		else
+			prepare_rim(prepare, index);
+	}
 	if (end == prepare->patch_count) {
-		u32 fans = prepare->patch_count - prepare->face_count;
-
 		prepare_padding(prepare->set, prepare->face_count);
-		prepare_padding(prepare->set,
-				blocks_for(prepare->face_count) * PHANTOM_BLOCK + fans);
+		prepare_padding(prepare->set, blocks_for(prepare->face_count) * PHANTOM_BLOCK +
+						      fan_count(prepare));
+		prepare_rim_padding(prepare);
 	}
 }
 
 static size_t section_set_bytes(u32 patch_count)
 {
-	/* faces and fans each fill their last block up */
-	size_t blocks = (size_t)blocks_for(patch_count) + 1;
+	/* faces, fans and rims each fill their last block up */
+	size_t blocks = (size_t)blocks_for(patch_count) + 2;
 	size_t bytes = sizeof(struct phantom_float_set) + blocks * sizeof(struct block) +
 		       blocks * sizeof(union scratch) + SHELL_SCRATCH_BYTES;
 

@@ -24,6 +24,7 @@
 #include "combine.h"
 #include "projected.h"
 #include "paper_fans.h"
+#include "rim.h"
 
 #define SHELL_WORK 30000U /* after which a section ends */
 #define SHELL_PIECE 4000U /* a piece of small steps goes on for that long */
@@ -32,6 +33,7 @@
 #define SHELL_COST_ROOT 300U /* beside that, for each found */
 #define SHELL_COST_PAIR 10U /* of roots at a wall */
 #define SHELL_COST_SUM 30U /* of a root or contact */
+#define SHELL_COST_RIMS 250U /* of sixteen rims, for a root or contact of an open surface */
 #define SHELL_COST_PLANES 40U /* of a step */
 #define SHELL_COST_CROSSED 80U /* a contact against a step */
 
@@ -105,6 +107,24 @@ static inline void shell_finish(struct shell_state *state, struct real3 force)
 	shell_next(state, SHELL_DONE);
 }
 
+/* What to multiply a contact by whose foot is that way from the tip. */
+static inline real shell_fade(const struct phantom_float_job *job, u32 patch, struct real3 normal,
+			      real height)
+{
+	return rim_fade(job->set, patch, job->tip_nm, real3_scale(normal, -height));
+}
+
+static inline real shell_root_fade(const struct phantom_float_job *job,
+				   const struct projected_root *root)
+{
+	return shell_fade(job, root->patch, root->normal, root->height);
+}
+
+static inline u32 shell_fade_cost(const struct phantom_float_set *set)
+{
+	return SHELL_COST_RIMS * set->rim_block_count;
+}
+
 /* ---- projected ------------------------------------------------------------ */
 
 static inline u32 shell_projected_blocks(const struct phantom_float_job *job,
@@ -155,9 +175,10 @@ static inline u32 shell_weights(const struct phantom_float_set *set, struct shel
 }
 
 /* S and F from the list of roots, in its order. */
-static inline u32 shell_projected_sum(const struct phantom_float_set *set,
+static inline u32 shell_projected_sum(const struct phantom_float_job *job,
 				      struct shell_state *state)
 {
+	const struct phantom_float_set *set = job->set;
 	struct contact_force *out = &state->out;
 	u32 spent = 0;
 	real length;
@@ -165,21 +186,22 @@ static inline u32 shell_projected_sum(const struct phantom_float_set *set,
 	for (; state->cursor < state->count && spent < SHELL_PIECE; state->cursor++) {
 		const struct projected_root *root = &scratch_projected(set)[state->cursor];
 		const struct float_material *material = shell_material(set, root->patch);
-		real magnitude = mul(root->weight, root->magnitude);
+		real fade = shell_root_fade(job, root);
+		real magnitude = mul(mul(root->weight, root->magnitude), fade);
 
 		state->sum = real3_add(state->sum,
 				       real3_scale(root->normal, mul(root->sign, magnitude)));
 		state->most = real_max(
 			state->most, real_limit_force(mul(material->stiffness, material->radius)));
 		state->forces += magnitude;
-		state->damping += mul(magnitude, material->damping);
+		state->damping += mul(mul(magnitude, material->damping), fade);
 		if (root->sign < 0) {
 			out->folded++;
 		} else if (root->height < out->deepest) {
 			out->deepest = root->height;
 			out->deepest_patch = root->patch;
 		}
-		spent += SHELL_COST_SUM;
+		spent += SHELL_COST_SUM + shell_fade_cost(set);
 	}
 	if (state->cursor == state->count) {
 		length = real3_length(state->sum);
@@ -302,25 +324,33 @@ static inline u32 shell_overlap(const struct phantom_float_job *job, struct shel
 	return spent;
 }
 
-static inline void shell_paper_add(const struct phantom_float_set *set, const struct paper_step *at,
-				   struct shell_state *state)
+/* Returns what its rims cost. */
+static inline u32 shell_paper_add(const struct phantom_float_job *job, const struct paper_step *at,
+				  struct shell_state *state)
 {
+	const struct phantom_float_set *set = job->set;
 	struct contact_force *out = &state->out;
-	u32 l;
+	lanes magnitude = at->magnitude;
+	u32 spent = 0, l;
 
-	columns_add(&state->columns, at->step, at->normal, at->magnitude);
 	for (l = 0; l < PHANTOM_LANES; l++) {
 		u32 patch = at->block * PHANTOM_BLOCK + at->step * PHANTOM_LANES + l;
+		real fade;
 
-		if (!(at->magnitude[l] > 0))
+		if (!(magnitude[l] > 0))
 			continue;
 		if (at->height[l] < out->deepest) {
 			out->deepest = at->height[l];
 			out->deepest_patch = patch;
 		}
-		state->forces += at->magnitude[l];
-		state->damping += mul(at->magnitude[l], shell_material(set, patch)->damping);
+		fade = shell_fade(job, patch, lanes3_lane(at->normal, l), at->length[l]);
+		magnitude[l] = mul(magnitude[l], fade);
+		state->forces += magnitude[l];
+		state->damping += mul(mul(magnitude[l], shell_material(set, patch)->damping), fade);
+		spent += shell_fade_cost(set);
 	}
+	columns_add(&state->columns, at->step, at->normal, magnitude);
+	return spent;
 }
 
 /* Faces, then fans: the cursor goes through both. */
@@ -331,17 +361,22 @@ static inline u32 shell_paper_sum(const struct phantom_float_job *job, struct sh
 
 	for (; state->cursor < end && spent < SHELL_PIECE; state->cursor++) {
 		const struct projected_root *root;
+		real fade, magnitude;
 
 		spent += SHELL_COST_SUM * PHANTOM_LANES;
 		if (state->cursor < state->count) {
-			shell_paper_add(set, &scratch_paper(set)[state->cursor], state);
+			spent += shell_paper_add(job, &scratch_paper(set)[state->cursor], state);
 			continue;
 		}
 		root = &scratch_fans(set)[state->cursor - state->count];
-		state->sum = real3_add(state->sum, real3_scale(root->normal, root->magnitude));
-		state->most = real_max(state->most, root->magnitude);
-		state->forces += root->magnitude;
-		state->damping += mul(root->magnitude, shell_material(set, root->patch)->damping);
+		fade = shell_root_fade(job, root);
+		magnitude = mul(root->magnitude, fade);
+		state->sum = real3_add(state->sum, real3_scale(root->normal, magnitude));
+		state->most = real_max(state->most, magnitude);
+		state->forces += magnitude;
+		state->damping +=
+			mul(mul(magnitude, shell_material(set, root->patch)->damping), fade);
+		spent += shell_fade_cost(set);
 	}
 	if (state->cursor == end) {
 		state->out.contacts += state->fans;
@@ -372,7 +407,7 @@ static inline u32 shell_piece(const struct phantom_float_job *job, struct shell_
 	case SHELL_OVERLAP:
 		return shell_overlap(job, state);
 	default:
-		return paper ? shell_paper_sum(job, state) : shell_projected_sum(job->set, state);
+		return paper ? shell_paper_sum(job, state) : shell_projected_sum(job, state);
 	}
 }
 

@@ -37,6 +37,7 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
     memcpy(out->centre_nm, set->centre_nm, sizeof(out->centre_nm));
     out->radius_nm = min_t(u32, set->radius_nm, PHANTOM_COVERAGE_MAX_NM);
     out->face_count = copy.face_count;
+    out->rim_count = copy.rim_count;
     out->reach_nm = 0;
     for (i = 0; i < set->material_count; i++)
         out->reach_nm = max_t(u32, out->reach_nm, copy.materials[i].radius_nm);

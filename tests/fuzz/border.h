@@ -22,6 +22,7 @@ struct border_set {
     uint32_t radius_nm; /* as the servo takes it */
     uint32_t reach_nm;
     uint32_t face_count;
+    uint32_t rim_count;
 };
 
 /* 0, or the negative errno with which SUBMIT_SET refuses it after a set with that id. */

@@ -129,6 +129,7 @@ void Section::take(const phantom_set& set, const border_set& border)
     prepare.materials = materials;
     prepare.patch_count = set.patch_count;
     prepare.face_count = border.face_count;
+    prepare.rim_count = border.rim_count;
     prepare.material_count = set.material_count;
     do {
         prepare.count = std::min<std::uint32_t>(set.patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);

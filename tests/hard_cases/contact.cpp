@@ -76,7 +76,7 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
 {
     const auto count = static_cast<u32>(triangles.size());
     std::vector<phantom_patch> patches(count);
-    u32 faces = 0;
+    u32 faces = 0, rims = 0;
     for (u32 f = 0; f < count; ++f) {
         for (std::size_t i = 0; i < 3; ++i) {
             to_nm(triangles[f].corner[i], patches[f].vertex_nm[i]);
@@ -88,13 +88,17 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
         }
         const auto& x = triangles[f].corner;
         const bool corner = x[0] == x[1] && x[1] == x[2];
-        patches[f].face = triangles[f].fan                          ? PHANTOM_PATCH_NONE
+        const bool face = !triangles[f].fan && !triangles[f].rim;
+        patches[f].face = !face                                     ? PHANTOM_PATCH_NONE
                           : triangles[f].face != PHANTOM_PATCH_NONE ? triangles[f].face
                                                                     : f;
-        patches[f].kind = !triangles[f].fan ? PHANTOM_PATCH_FACE
-                          : corner          ? PHANTOM_PATCH_CORNER
-                                            : PHANTOM_PATCH_EDGE;
-        faces += !triangles[f].fan;
+        patches[f].kind = face               ? PHANTOM_PATCH_FACE
+                          : triangles[f].rim ? PHANTOM_PATCH_RIM
+                          : corner           ? PHANTOM_PATCH_CORNER
+                                             : PHANTOM_PATCH_EDGE;
+        patches[f].surface = triangles[f].surface;
+        faces += face;
+        rims += triangles[f].rim;
     }
     const auto materials = materials_of(triangles, settings, patches);
     set_.reset(std::aligned_alloc(PHANTOM_FLOAT_SET_ALIGN, ops.set_bytes(count)));
@@ -106,6 +110,7 @@ Contact::Contact(const phantom_float_ops& ops, const std::vector<reference::Tria
     prepare.materials = materials.data();
     prepare.patch_count = count;
     prepare.face_count = faces;
+    prepare.rim_count = rims;
     prepare.material_count = static_cast<u32>(materials.size());
     do {
         prepare.count = std::min<u32>(PHANTOM_FLOAT_PREPARE_MAX, count - prepare.first);

@@ -39,7 +39,7 @@ std::vector<const phantom_float_ops*> wide_sections();
 
 class Contact {
   public:
-    /// Fans last.
+    /// Faces, then fans, then rims.
     Contact(const phantom_float_ops& ops, const std::vector<reference::Triangle>& triangles,
             Settings settings);
 

@@ -77,7 +77,9 @@ Triangles joined(Triangles all, Triangles more)
         for (std::uint32_t& v : t.vertex)
             v += first;
     all.insert(all.end(), more.begin(), more.end());
-    std::stable_partition(all.begin(), all.end(), [](const auto& t) { return !t.fan; }); // fans last
+    // fans after the faces, rims last
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.fan + 2 * a.rim < b.fan + 2 * b.rim; });
     return all;
 }
 

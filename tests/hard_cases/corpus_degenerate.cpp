@@ -225,9 +225,10 @@ std::vector<Case> degenerate_cases()
                {{{{-1, 0.3, 0.4}, {1, -0.3, 0.4}}}, {{{0, 0, 0.8}, {0, 0, 0}, {0, 0, -0.3}}}},
                "flat, `paper` does not feel it; `projected` for some 0.1 um beside the lone vertex"));
     out.back().paper_step = smooth_step;
-    out.push_back(faulty("over the rim of an open sheet", sheets({0}), 1,
+    out.push_back(faulty("over the rim of an open sheet", with_rims(sheets({0})), 1,
                          {{{{3, 0.2, 0.3}, {6, 0.1, 0.3}}}, {{{4.8, 0.2, 0.3}, {4.8, 0, -0.3}, {5.5, 0, 0}}}},
-                         "the force ends at the rim; `two_sided` closes the sheet"));
+                         "fades over the last R before the rim; `two_sided` closes the sheet"));
+    out.back().paper_step = out.back().projected_step = out.back().inside_step = smooth_step;
     const auto block = faceted(box({3, 3, 1}).triangles(1, 1));
     out.push_back(faulty("blocks that cross", joined(block, moved(block, {2, 2, 1})), 1,
                          {{{{-2, 0, 1.4}, {3, 1, 1.4}, {3, 2, 2.5}}},

@@ -157,10 +157,12 @@ Triangles changed(Triangles triangles, const Change& change, std::mt19937& rando
         }
     }
     if (change.shuffled) {
-        const auto faces =
-            std::find_if(triangles.begin(), triangles.end(), [](const auto& t) { return t.fan; });
-        std::shuffle(triangles.begin(), faces, random);
-        std::shuffle(faces, triangles.end(), random);
+        const auto rims =
+            std::find_if(triangles.begin(), triangles.end(), [](const auto& t) { return t.rim; });
+        const auto fans = std::find_if(triangles.begin(), rims, [](const auto& t) { return t.fan; });
+        std::shuffle(triangles.begin(), fans, random);
+        std::shuffle(fans, rims, random);
+        std::shuffle(rims, triangles.end(), random);
     }
     return triangles;
 }

@@ -5,6 +5,7 @@
 
 #include "mesh/fans.hpp"
 #include "mesh/prepare.hpp"
+#include "mesh/rims.hpp"
 
 namespace phantom::hard {
 
@@ -29,7 +30,10 @@ std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double
         throw std::invalid_argument(done.error().text());
     const mesh::Mesh& mesh = done->mesh;
     std::vector<reference::Triangle> out;
-    const auto add_triangle = [&](const mesh::Triple& corners, const std::array<Vec3, 3>& normals, bool fan) {
+    const mesh::Fans fans = mesh::make_fans(mesh);
+    const mesh::Rims rims = mesh::make_rims(mesh, radius);
+    const auto add_triangle = [&](const mesh::Triple& corners, const std::array<Vec3, 3>& normals,
+                                  std::uint32_t surface) -> reference::Triangle& {
         reference::Triangle t;
         for (std::size_t i = 0; i < 3; ++i) {
             t.corner[i] = on_grid(mesh.vertices[corners[i]]);
@@ -38,16 +42,45 @@ std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double
         }
         t.stiffness = stiffness;
         t.radius = radius;
-        t.fan = fan;
+        t.surface = surface;
         out.push_back(t);
+        return out.back();
     };
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto faces = static_cast<std::uint32_t>(mesh.faces.size());
+    for (std::uint32_t f = 0; f < faces; ++f) {
         const auto& n = mesh.face_normals[f];
-        add_triangle(mesh.faces[f], {mesh.normals[n[0]], mesh.normals[n[1]], mesh.normals[n[2]]}, false);
+        add_triangle(mesh.faces[f], {mesh.normals[n[0]], mesh.normals[n[1]], mesh.normals[n[2]]},
+                     rims.surface_of(f));
     }
-    for (const mesh::Fan& fan : mesh::make_fans(mesh).fans)
-        add_triangle(fan.corners, fan.normals, true);
+    for (std::uint32_t f = 0; f < faces; ++f)
+        for (const mesh::Fan& fan : fans.of(f))
+            add_triangle(fan.corners, fan.normals, rims.surface_of(f)).fan = true;
+    const Vec3 any{0, 0, 1};
+    for (const mesh::Rim& rim : rims.edges)
+        add_triangle({rim.from, rim.to, rim.to}, {any, any, any}, rim.surface).rim = true;
     return out;
+}
+
+std::vector<reference::Triangle> with_rims(std::vector<reference::Triangle> triangles)
+{
+    mesh::Mesh mesh;
+    for (const auto& t : triangles) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), t.corner.begin(), t.corner.end());
+        mesh.faces.push_back({first, first + 1, first + 2});
+        mesh.neighbours.push_back({mesh::no_neighbour, mesh::no_neighbour, mesh::no_neighbour});
+    }
+    const mesh::Rims rims = mesh::make_rims(mesh, triangles[0].radius);
+    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
+        triangles[f].surface = rims.surface_of(f);
+    for (const mesh::Rim& rim : rims.edges) {
+        reference::Triangle t = triangles[rim.face];
+        t.corner = {mesh.vertices[rim.from], mesh.vertices[rim.to], mesh.vertices[rim.to]};
+        t.surface = rim.surface;
+        t.rim = true;
+        triangles.push_back(t);
+    }
+    return triangles;
 }
 
 } // namespace phantom::hard

@@ -7,7 +7,8 @@
 
 namespace phantom::hard {
 
-/// Faces, then the fans of their creases: what the user side's preparation makes of the shape.
+/// Faces, then the fans of their creases, then the rims where the mesh is open: what the user side's
+/// preparation makes of the shape.
 std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, double stiffness,
                                          double radius, bool two_sided = false);
 
@@ -15,5 +16,9 @@ std::vector<reference::Triangle> creased(const Shape& shape, double crease_deg, 
 /// is). Throws std::invalid_argument where nothing is left of it.
 std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double crease_deg, double stiffness,
                                           double radius, bool two_sided = false);
+
+/// The rims where the triangles leave off, by their points: faces before R of one know their surface, and the
+/// rims come last. All of one R.
+std::vector<reference::Triangle> with_rims(std::vector<reference::Triangle> triangles);
 
 } // namespace phantom::hard

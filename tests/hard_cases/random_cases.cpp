@@ -97,7 +97,7 @@ unsigned without_plane(const Triangles& mesh)
             longest = std::max(longest, length(subtract(t.corner[(i + 1) % 3], t.corner[i])));
         const double area =
             length(cross(subtract(t.corner[1], t.corner[0]), subtract(t.corner[2], t.corner[0])));
-        count += !t.fan && area < 16e-6 * longest;
+        count += !t.fan && !t.rim && area < 16e-6 * longest;
     }
     return count;
 }
@@ -135,7 +135,8 @@ Triangles placed(Triangles triangles, const Pose& pose)
 /// A point over or under a random face, up to its corners and beyond.
 Vec3 near_some_face(Chance& chance, const Triangles& mesh, double low, double high)
 {
-    const auto& t = mesh[chance.below(static_cast<unsigned>(mesh.size()))];
+    const auto rims = std::find_if(mesh.begin(), mesh.end(), [](const auto& t) { return t.rim; });
+    const auto& t = mesh[chance.below(static_cast<unsigned>(rims - mesh.begin()))];
     double a = chance.between(-0.2, 1.2), b = chance.between(-0.2, 1.2);
     if (chance.below(4) == 0) // exactly on an edge's or a corner's line
         a = chance.below(2);

@@ -315,8 +315,24 @@ std::vector<Real> shell_roots(const Triangle& t, V tip)
     return cubic_roots(c, 1e3);
 }
 
+/// What the force of a contact with that triangle is multiplied by: before the rims of its surface it fades.
+Real fade(const std::vector<Triangle>& rims, const Triangle& t, V foot)
+{
+    Real least = 1;
+    for (const Triangle& rim : rims) {
+        if (rim.surface != t.surface)
+            continue;
+        const V from = corner(rim, 0), edge = corner(rim, 1) - from;
+        Real s = dot(edge, foot - from) / dot(edge, edge);
+        s = s < 0 ? Real(0) : s > 1 ? Real(1) : s;
+        least = std::min(least, length(foot - (from + s * edge)) / Real(t.radius));
+    }
+    return least;
+}
+
 /// Adds one root of one patch: (b, h) solves P = sum b_i (x_i + h m_i).
-void add_root(const Triangle& t, V tip, Real h, ShellSum& shell, Result& result)
+void add_root(const Triangle& t, const std::vector<Triangle>& rims, V tip, Real h, ShellSum& shell,
+              Result& result)
 {
     const ShellPoint at = shell_point(t, tip, h, result);
     if (!at.in_shell)
@@ -329,7 +345,8 @@ void add_root(const Triangle& t, V tip, Real h, ShellSum& shell, Result& result)
         return;
     ++result.contacts;
     result.folded += at.folded ? 1 : 0;
-    const Real signed_force = t.stiffness * (radius - height) * (at.folded ? -1 : 1);
+    const Real whole = t.stiffness * (radius - height) * fade(rims, t, tip - h * at.normal);
+    const Real signed_force = at.folded ? -whole : whole;
     shell.sum = shell.sum + signed_force * unit(at.normal);
     shell.bound = std::max(shell.bound, Real(t.stiffness) * radius);
 }
@@ -354,8 +371,8 @@ void find_fan_contacts(const std::vector<Triangle>& triangles, const std::vector
     }
 }
 
-Result paper_shell(const std::vector<Triangle>& triangles, const std::vector<std::size_t>& faces, V tip,
-                   Combine rule)
+Result paper_shell(const std::vector<Triangle>& triangles, const std::vector<Triangle>& rims,
+                   const std::vector<std::size_t>& faces, V tip, Combine rule)
 {
     Result result;
     std::vector<Contact> contacts;
@@ -369,21 +386,23 @@ Result paper_shell(const std::vector<Triangle>& triangles, const std::vector<std
             ++result.dropped;
             continue;
         }
-        sum = sum + c.force;
-        most = std::max(most, length(c.force));
+        const V force = fade(rims, triangles[c.face], c.foot) * c.force;
+        sum = sum + force;
+        most = std::max(most, length(force));
         ++result.contacts;
     }
     result.force = to_double(combined(sum, most, rule));
     return result;
 }
 
-Result projected_shell(const std::vector<Triangle>& triangles, const std::vector<std::size_t>& faces, V tip)
+Result projected_shell(const std::vector<Triangle>& triangles, const std::vector<Triangle>& rims,
+                       const std::vector<std::size_t>& faces, V tip)
 {
     Result result;
     ShellSum shell;
     for (const std::size_t f : faces)
         for (const Real h : shell_roots(triangles[f], tip))
-            add_root(triangles[f], tip, h, shell, result);
+            add_root(triangles[f], rims, tip, h, shell, result);
     const Real l = length(shell.sum);
     result.force = to_double(l > shell.bound ? (shell.bound / l) * shell.sum : shell.sum);
     return result;
@@ -394,6 +413,10 @@ Result projected_shell(const std::vector<Triangle>& triangles, const std::vector
 Reference::Reference(std::vector<Triangle> triangles, Options options)
     : triangles_(std::move(triangles)), options_(options)
 {
+    const auto rims =
+        std::stable_partition(triangles_.begin(), triangles_.end(), [](const Triangle& t) { return !t.rim; });
+    rims_.assign(rims, triangles_.end());
+    triangles_.erase(rims, triangles_.end());
     for (const Triangle& t : triangles_) {
         double extent = 0;
         for (const Vec3& x : t.corner)
@@ -423,8 +446,9 @@ Result Reference::shell(const Vec3& tip) const
     for (const Triangle& t : triangles_)
         radius = std::max(radius, t.radius);
     const auto faces = near(tip, 2 * radius);
-    Result result = options_.model == Model::paper ? paper_shell(triangles_, faces, of(tip), options_.combine)
-                                                   : projected_shell(triangles_, faces, of(tip));
+    Result result = options_.model == Model::paper
+                        ? paper_shell(triangles_, rims_, faces, of(tip), options_.combine)
+                        : projected_shell(triangles_, rims_, faces, of(tip));
     result.proxy = tip;
     return result;
 }
@@ -490,7 +514,7 @@ Vec3 Reference::held(const Vec3& tip, const Vec3& proxy, std::size_t face) const
         }
         n = unit(n);
     }
-    return to_double(Real(t.stiffness) * (Real(t.radius) * n + (v - of(tip))));
+    return to_double(fade(rims_, t, v) * Real(t.stiffness) * (Real(t.radius) * n + (v - of(tip))));
 }
 
 Result Reference::tick(const Vec3& tip)

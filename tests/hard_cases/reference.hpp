@@ -18,9 +18,11 @@ struct Triangle {
     std::array<Vec3, 3> normal; ///< unit, per corner
     std::array<std::uint32_t, 3> vertex{};
     std::uint32_t face = 0xffffffffU; ///< its number in every set; by default its place in the list
-    bool fan = false;     ///< over an edge or a corner: two or three of the corners are the same point
-    double stiffness = 1; ///< k
-    double radius = 1;    ///< R
+    bool fan = false; ///< over an edge or a corner: two or three of the corners are the same point
+    bool rim = false; ///< no triangle: the surface ends on the edge from corner 0 to 1; corner 2 = corner 1
+    std::uint32_t surface = 0; ///< whose force fades within R of rims with that number; 0: none's
+    double stiffness = 1;      ///< k
+    double radius = 1;         ///< R
 };
 
 enum class Model { paper, projected };
@@ -71,7 +73,7 @@ class Reference {
     [[nodiscard]] bool covered(const Vec3& tip, std::size_t face) const;
     void enter(const Vec3& from, const Vec3& to, const Crossing& at);
 
-    std::vector<Triangle> triangles_;
+    std::vector<Triangle> triangles_, rims_;
     std::vector<double> extents_; // farthest corner from corner 0
     Options options_;
     bool inside_ = false, has_path_ = false;

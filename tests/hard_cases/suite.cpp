@@ -321,7 +321,7 @@ std::string as_obj(const Triangles& triangles)
     std::string out;
     std::size_t vertex = 0;
     for (const auto& t : triangles) {
-        if (t.fan)
+        if (t.fan || t.rim)
             continue;
         for (std::size_t i = 0; i < 3; ++i)
             out += fmt::format("v {:.6f}\nvn {:.9f}\n", fmt::join(t.corner[i], " "),

@@ -209,6 +209,20 @@ phantom_patch& add_fan(Plane& plane, std::uint32_t kind = PHANTOM_PATCH_EDGE)
     return plane.patches.back();
 }
 
+/// The first edge of the first patch as a rim; well made.
+phantom_patch& add_rim(Plane& plane)
+{
+    phantom_patch rim = plane.patches[0];
+    rim.kind = PHANTOM_PATCH_RIM;
+    rim.face = PHANTOM_PATCH_NONE;
+    rim.surface = 1;
+    for (auto& neighbour : rim.neighbour)
+        neighbour = PHANTOM_PATCH_NONE;
+    std::copy_n(rim.vertex_nm[1], 3, rim.vertex_nm[2]);
+    plane.patches.push_back(rim);
+    return plane.patches.back();
+}
+
 const BadSet bad_sets[] = {
     {"id 0", {}, [](phantom_set& s) { s.id = 0; }},
     {"id of the last set", {}, [](phantom_set& s) { s.id = 1; }},
@@ -241,7 +255,7 @@ const BadSet bad_sets[] = {
     {"neighbour out of range", [](Plane& p) { p.patches[0].neighbour[1] = 2; }},
     {"object out of range", [](Plane& p) { p.patches[1].object = 1; }},
     {"material out of range", [](Plane& p) { p.patches[1].material = 1; }},
-    {"unknown kind", [](Plane& p) { p.patches[1].kind = PHANTOM_PATCH_CORNER + 1; }},
+    {"unknown kind", [](Plane& p) { p.patches[1].kind = PHANTOM_PATCH_RIM + 1; }},
     {"edge with three points", [](Plane& p) { add_fan(p).vertex_nm[2][1] += 1; }},
     {"edge that is a point", [](Plane& p) { add_fan(p, PHANTOM_PATCH_CORNER).kind = PHANTOM_PATCH_EDGE; }},
     {"corner that is an edge", [](Plane& p) { add_fan(p).kind = PHANTOM_PATCH_CORNER; }},
@@ -257,8 +271,38 @@ const BadSet bad_sets[] = {
          add_fan(p);
          p.patches.push_back(p.patches[0]);
      }},
-    {"patch reserved 0", [](Plane& p) { p.patches[1].reserved[0] = 1; }},
-    {"patch reserved 1", [](Plane& p) { p.patches[1].reserved[1] = 1; }},
+    {"rim that is a face", [](Plane& p) { add_rim(p).vertex_nm[2][1] += 1; }},
+    {"rim that is a point",
+     [](Plane& p) {
+         phantom_patch& rim = add_rim(p);
+         std::copy_n(rim.vertex_nm[0], 3, rim.vertex_nm[1]);
+         std::copy_n(rim.vertex_nm[0], 3, rim.vertex_nm[2]);
+     }},
+    {"rim begun with the end that stands twice",
+     [](Plane& p) {
+         phantom_patch& rim = add_rim(p);
+         std::copy_n(rim.vertex_nm[0], 3, rim.vertex_nm[2]);
+     }},
+    {"rim with a face number", [](Plane& p) { add_rim(p).face = 7; }},
+    {"rim with a neighbour", [](Plane& p) { add_rim(p).neighbour[2] = 0; }},
+    {"rim without a surface", [](Plane& p) { add_rim(p).surface = 0; }},
+    {"rim with a zero normal", [](Plane& p) { add_rim(p).normal_q30[0][2] = 0; }},
+    {"rim as a neighbour",
+     [](Plane& p) {
+         add_rim(p);
+         p.patches[0].neighbour[0] = 2;
+     }},
+    {"face after a rim",
+     [](Plane& p) {
+         add_rim(p);
+         p.patches.push_back(p.patches[0]);
+     }},
+    {"fan after a rim",
+     [](Plane& p) {
+         add_rim(p);
+         add_fan(p);
+     }},
+    {"patch reserved", [](Plane& p) { p.patches[1].reserved = 1; }},
     {"radius 0", [](Plane& p) { p.materials[0].radius_nm = 0; }},
     {"damping without the effect", [](Plane& p) { p.materials[0].damping_mns_m = 1; }},
     {"unknown material effect", [](Plane& p) { p.materials[0].effects = 2; },
@@ -303,6 +347,21 @@ TEST_F(Errors, FansAfterTheFacesAreAccepted)
     add_fan(plane);
     add_fan(plane, PHANTOM_PATCH_CORNER);
     EXPECT_EQ(feeder.submit(plane), 0);
+}
+
+TEST_F(Errors, RimsAfterTheFansAreAccepted)
+{
+    File feeder(machine);
+    Plane plane(1);
+    plane.patches[0].surface = plane.patches[1].surface = 0xffffffff;
+    add_fan(plane).surface = 0xffffffff;
+    add_rim(plane).surface = 0xffffffff;
+    add_rim(plane);
+    EXPECT_EQ(feeder.submit(plane), 0);
+    Plane alone(2);
+    const phantom_patch rim = add_rim(alone);
+    alone.patches = {rim};
+    EXPECT_EQ(feeder.submit(alone), 0) << "no face, no fan: nothing to touch";
 }
 
 TEST_F(Errors, EmptySetIsASet)

@@ -74,6 +74,7 @@ nlohmann::json json_of(const Facts& facts)
                            {"file", object.file.string()},
                            {"triangles", object.mesh.faces.size()},
                            {"fans", object.fans.fans.size()},
+                           {"rims", object.rims.edges.size()},
                            {"material", scene.materials[object.material].name},
                            {"report", report_json(object.report)}});
     for (const scene::Material& material : scene.materials) {
@@ -130,6 +131,12 @@ std::string text_of(const Facts& facts)
         text += report_text(object.report);
         if (!object.fans.fans.empty())
             add("fans", fmt::format("{} over creases and their corners", object.fans.fans.size()));
+        if (!object.rims.edges.empty())
+            add("rims",
+                fmt::format("{} edges in {} rim{}: open, so the force fades over the last {:g} mm before "
+                            "them (two_sided = true closes it)",
+                            object.rims.edges.size(), object.rims.loops, object.rims.loops == 1 ? "" : "s",
+                            scene.materials[object.material].radius_mm));
     }
     text += "\n";
     for (const scene::Material& material : scene.materials)

@@ -17,6 +17,8 @@ nlohmann::json report_json(const mesh::Report& report)
             {"components_turned", report.components_turned},
             {"nonmanifold_edges", report.nonmanifold_edges},
             {"boundary_edges", report.boundary_edges},
+            {"rim_edges", report.rim_edges},
+            {"rims", report.rims},
             {"crease_edges", report.crease_edges},
             {"normals_repaired", report.normals_repaired},
             {"faces_split", report.faces_split},
@@ -42,10 +44,11 @@ std::string report_text(const mesh::Report& report)
                     "flipped, {} components turned, {} normals",
                     report.vertices_welded, report.faces_zero_area, report.faces_duplicate,
                     report.faces_flipped, report.components_turned, report.normals_repaired));
-    add("has", fmt::format("{} component{}, {} boundary edges, {} non-manifold edges, {} creases: {}",
-                           report.components, report.components == 1 ? "" : "s", report.boundary_edges,
-                           report.nonmanifold_edges, report.crease_edges,
-                           report.watertight ? "watertight" : "not watertight"));
+    add("has",
+        fmt::format("{} component{}, {} boundary edges, {} rim{}, {} non-manifold edges, {} creases: {}",
+                    report.components, report.components == 1 ? "" : "s", report.boundary_edges, report.rims,
+                    report.rims == 1 ? "" : "s", report.nonmanifold_edges, report.crease_edges,
+                    report.watertight ? "watertight" : "not watertight"));
     if (report.faces_split)
         add("split", fmt::format("{} faces added", report.faces_split));
     add("result", fmt::format("{} vertices, {} faces, {:.4g} x {:.4g} x {:.4g} mm", report.vertices,

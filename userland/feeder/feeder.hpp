@@ -37,7 +37,7 @@ struct FeedReport {
 
 /// Turns hits into a set: world coordinates, origin = the centre, adjacency inside the set. Patches are
 /// ordered by object and face, whatever the order of the hits: the same triangles give the same bits. The
-/// faces' fans follow them in the same order.
+/// faces' fans follow them in the same order, then the rims that the force over some of the faces fades at.
 class SetBuilder {
   public:
     /// patches_max: what the device takes in a set; build_all() does not ask.
@@ -57,6 +57,12 @@ class SetBuilder {
     /// Forgets the numbers that claim() gave for these faces.
     void release(const std::vector<std::array<std::uint32_t, 2>>& faces);
     void fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out);
+    /// The rims that a set of the first so many hits needs: those within R of what it covers, on the surfaces
+    /// that it has faces of.
+    void find_rims(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
+                   double coverage_mm);
+    void add_rim(std::uint32_t object, std::uint32_t rim, const std::array<std::int64_t, 3>& origin_nm,
+                 device::PatchSet& out) const;
     void add_fans(std::uint32_t object, std::uint32_t face, const std::array<std::int64_t, 3>& origin_nm,
                   device::PatchSet& out) const;
     phantom_patch patch(std::uint32_t object, std::uint32_t face,
@@ -68,6 +74,14 @@ class SetBuilder {
     std::vector<std::uint32_t> material_slot_;        ///< scratch: scene material to index in the set
     std::vector<std::uint32_t> object_slot_;          ///< scratch: scene object to index in the set
     std::vector<std::array<std::uint32_t, 2>> faces_; ///< scratch: (object, face)
+    struct NeededRim {
+        std::uint32_t object, rim;
+        std::size_t hits; ///< by every set of at least as many of the hits
+    };
+    std::vector<NeededRim> rims_;                        ///< scratch
+    std::vector<std::array<std::uint32_t, 3>> surfaces_; ///< scratch: (object, surface, its first hit)
+    std::vector<mesh::Rims::Near> near_rims_;            ///< scratch
+    std::vector<std::size_t> rims_from_;                 ///< scratch: how many more with so many hits
 };
 
 /// Whether sets can carry this scene: no triangle may reach farther from the tip than a set's coordinates

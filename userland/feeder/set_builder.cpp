@@ -36,6 +36,14 @@ Vector to_world(const fdh::Pose& pose, const Vector& v)
     return {r[0] + pose.translation[0], r[1] + pose.translation[1], r[2] + pose.translation[2]};
 }
 
+Vector to_object(const fdh::Pose& pose, const Vector& v)
+{
+    const auto& r = pose.rotation;
+    const Vector q = {v[0] - pose.translation[0], v[1] - pose.translation[1], v[2] - pose.translation[2]};
+    return {r[0] * q[0] + r[3] * q[1] + r[6] * q[2], r[1] * q[0] + r[4] * q[1] + r[7] * q[2],
+            r[2] * q[0] + r[5] * q[1] + r[8] * q[2]};
+}
+
 Vector cross(const Vector& a, const Vector& b)
 {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -88,6 +96,12 @@ phantom_material material_of(const scene::Material& material)
         out.effects |= PHANTOM_EFFECT_DAMPING;
     }
     return out;
+}
+
+/// Of an object's surface, unique in the scene; 0 stays 0.
+std::uint32_t surface_number(const scene::Object& object, std::uint32_t surface)
+{
+    return surface == 0 ? 0 : object.first_face + surface;
 }
 
 } // namespace
@@ -155,6 +169,7 @@ phantom_patch SetBuilder::patch(std::uint32_t object, std::uint32_t face,
     out.object = object_slot_[object];
     out.material = material_slot_[owner.material];
     out.kind = PHANTOM_PATCH_FACE;
+    out.surface = surface_number(owner, owner.rims.surface_of(face));
     return out;
 }
 
@@ -177,12 +192,34 @@ void SetBuilder::add_fans(std::uint32_t object, std::uint32_t face,
         entry.object = object_slot_[object];
         entry.material = material_slot_[owner.material];
         entry.kind = fan.over_vertex() ? PHANTOM_PATCH_CORNER : PHANTOM_PATCH_EDGE;
+        entry.surface = surface_number(owner, owner.rims.surface_of(face));
         // An edge shorter than a nm is a point to the servo, and no fan.
         const auto& x = entry.vertex_nm;
         const bool point = std::equal(x[0], x[0] + 3, x[1]) && std::equal(x[1], x[1] + 3, x[2]);
         if (fan.over_vertex() || !point)
             out.patches.push_back(entry);
     }
+}
+
+void SetBuilder::add_rim(std::uint32_t object, std::uint32_t rim,
+                         const std::array<std::int64_t, 3>& origin_nm, device::PatchSet& out) const
+{
+    const scene::Object& owner = scene_.objects[object];
+    const mesh::Rim& edge = owner.rims.edges[rim];
+    phantom_patch entry = patch(object, edge.face, origin_nm);
+    const std::array<std::uint32_t, 3> corners = {edge.from, edge.to, edge.to};
+    for (int corner = 0; corner < 3; ++corner) {
+        const Vector at = to_world(owner.pose, owner.mesh.vertices[corners[corner]]);
+        for (int axis = 0; axis < 3; ++axis)
+            entry.vertex_nm[corner][axis] = static_cast<__s32>(to_nm(at[axis]) - origin_nm[axis]);
+        entry.vertex[corner] = owner.first_vertex + corners[corner];
+        entry.neighbour[corner] = PHANTOM_PATCH_NONE;
+    }
+    entry.face = PHANTOM_PATCH_NONE;
+    entry.kind = PHANTOM_PATCH_RIM;
+    // Shorter than a nm it is a point to the servo; the rims beside it end there.
+    if (!std::equal(entry.vertex_nm[0], entry.vertex_nm[0] + 3, entry.vertex_nm[1]))
+        out.patches.push_back(entry);
 }
 
 void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out)
@@ -197,6 +234,8 @@ void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, de
     }
     for (const auto& [object, face] : faces)
         add_fans(object, face, origin_nm, out);
+    for (const NeededRim& needed : rims_)
+        add_rim(needed.object, needed.rim, origin_nm, out);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const scene::Object& owner = scene_.objects[faces[i][0]];
         const mesh::Triple& neighbours = owner.mesh.neighbours[faces[i][1]];
@@ -221,6 +260,46 @@ void SetBuilder::release(const std::vector<std::array<std::uint32_t, 2>>& faces)
     }
 }
 
+void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
+                           double coverage_mm)
+{
+    rims_.clear();
+    surfaces_.clear();
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (const auto surface = scene_.objects[hits[i].object].rims.surface_of(hits[i].triangle))
+            surfaces_.push_back({hits[i].object, surface, static_cast<std::uint32_t>(i)});
+    std::sort(surfaces_.begin(), surfaces_.end());
+    const auto same = [](const auto& a, const auto& b) { return a[0] == b[0] && a[1] == b[1]; };
+    surfaces_.erase(std::unique(surfaces_.begin(), surfaces_.end(), same), surfaces_.end());
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+        const std::uint32_t object = surfaces_[s][0];
+        if (s > 0 && surfaces_[s - 1][0] == object)
+            continue;
+        const scene::Object& owner = scene_.objects[object];
+        const double radius_mm = scene_.materials[owner.material].radius_mm;
+        near_rims_.clear();
+        owner.rims.within(owner.mesh, to_object(owner.pose, centre_mm), coverage_mm + radius_mm, near_rims_);
+        for (const mesh::Rims::Near& near : near_rims_) {
+            const std::array<std::uint32_t, 3> key = {object, owner.rims.edges[near.rim].surface, 0};
+            const auto surface = std::lower_bound(surfaces_.begin(), surfaces_.end(), key);
+            if (surface == surfaces_.end() || !same(*surface, key))
+                continue;
+            // A set of the first n hits covers the distance of the next one.
+            const auto reaching = std::lower_bound(
+                hits.begin(), hits.end(), near.distance - radius_mm,
+                [](const fdh::Hit& hit, double distance) { return hit.distance < distance; });
+            rims_.push_back(
+                {object, near.rim, std::max<std::size_t>((*surface)[2] + 1, reaching - hits.begin())});
+        }
+    }
+    std::sort(rims_.begin(), rims_.end(), [](const NeededRim& a, const NeededRim& b) {
+        return a.object != b.object ? a.object < b.object : a.rim < b.rim;
+    });
+    rims_from_.assign(hits.size() + 1, 0);
+    for (const NeededRim& needed : rims_)
+        ++rims_from_[needed.hits];
+}
+
 void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
                        double coverage_mm, device::PatchSet& out)
 {
@@ -228,15 +307,17 @@ void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<doubl
     faces_.clear();
     for (const fdh::Hit& hit : hits)
         faces_.push_back({hit.object, hit.triangle});
+    find_rims(hits, centre_mm, coverage_mm);
     std::size_t patches = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        patches += 1 + scene_.objects[hits[i].object].fans.of(hits[i].triangle).size();
+        patches += 1 + scene_.objects[hits[i].object].fans.of(hits[i].triangle).size() + rims_from_[i + 1];
         if (patches > patches_max_ || !claim(hits[i].object, out)) {
             coverage_mm = std::min(coverage_mm, hits[i].distance);
             faces_.resize(i);
             break;
         }
     }
+    std::erase_if(rims_, [this](const NeededRim& needed) { return needed.hits > faces_.size(); });
     std::sort(faces_.begin(), faces_.end());
     // Claimed again in that order: numbers of materials and objects must not depend on who was nearest.
     release(faces_);
@@ -253,6 +334,7 @@ void SetBuilder::build_all(const std::array<double, 3>& centre_mm, device::Patch
 {
     begin(centre_mm, out);
     faces_.clear();
+    rims_.clear();
     bool complete = true;
     for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
         if (scene_.objects[object].mesh.faces.empty())
@@ -263,6 +345,8 @@ void SetBuilder::build_all(const std::array<double, 3>& centre_mm, device::Patch
         }
         for (std::uint32_t face = 0; face < scene_.objects[object].mesh.faces.size(); ++face)
             faces_.push_back({object, face});
+        for (std::uint32_t rim = 0; rim < scene_.objects[object].rims.edges.size(); ++rim)
+            rims_.push_back({object, rim, 0});
     }
     fill(faces_, out);
     out.header.radius_nm = complete ? std::numeric_limits<__u32>::max() : 0;

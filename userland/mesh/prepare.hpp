@@ -34,9 +34,12 @@ struct Report {
         0;                           ///< dropped: a corner is not a finite point (no file that read() takes)
     std::uint64_t faces_flipped = 0; ///< turned so that neighbours agree
     std::uint64_t components = 0;
-    std::uint64_t components_turned = 0;  ///< closed and inside out: turned outward
-    std::uint64_t nonmanifold_edges = 0;  ///< shared by more than two faces
-    std::uint64_t boundary_edges = 0;     ///< with one face
+    std::uint64_t components_turned = 0; ///< closed and inside out: turned outward
+    std::uint64_t nonmanifold_edges = 0; ///< shared by more than two faces
+    std::uint64_t boundary_edges = 0;    ///< with one face
+    /// At which a surface ends, by their points, one-sided; what hangs together of them is one rim. See
+    /// rims.hpp.
+    std::uint64_t rim_edges = 0, rims = 0;
     std::uint64_t unorientable_edges = 0; ///< two faces that cannot agree on a side (a Moebius strip)
     std::uint64_t crease_edges = 0;
     std::uint64_t normals_repaired = 0;    ///< corner normals that cancelled to zero or did not fit

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "mesh/edge_index.hpp"
+#include "mesh/rims.hpp"
 #include "mesh/steps.hpp"
 #include "mesh/vector.hpp"
 
@@ -45,10 +46,14 @@ void warn_defects(bool two_sided, Report& report)
         if (count > 0)
             report.warnings.push_back(fmt::format("{} {}", count, what));
     };
-    if (!two_sided)
-        warn(report.boundary_edges,
-             "boundary edges: the mesh is open, a tip can get behind it (two_sided = true in a "
-             "scene file makes both sides hard)");
+    if (!two_sided && report.rims > 0)
+        report.warnings.push_back(fmt::format(
+            "{} boundary edges in {} rim{}: the mesh is open, the force fades over the last contact radius "
+            "before a rim, and a tip can get behind it (two_sided = true in a scene file closes it)",
+            report.rim_edges, report.rims, report.rims == 1 ? "" : "s"));
+    else if (!two_sided)
+        warn(report.boundary_edges, "boundary edges whose points are others' as well: no proxy slides across "
+                                    "them (--prepare full welds)");
     warn(report.nonmanifold_edges, "non-manifold edges (more than two faces): no proxy slides across them");
     warn(report.unorientable_edges,
          "edges whose two faces disagree on the outside: no proxy slides across them");
@@ -64,6 +69,9 @@ void finish_report(const Mesh& mesh, const EdgeIndex& edges, bool two_sided, Rep
     report.vertices = mesh.vertices.size();
     report.faces = mesh.faces.size();
     measure_edges(mesh, edges, report);
+    const Rims rims = make_rims(mesh, 0);
+    report.rim_edges = rims.edges.size();
+    report.rims = rims.loops;
     const Bounds bounds = bounds_of(mesh.vertices);
     for (std::size_t axis = 0; axis < 3; ++axis)
         report.size_mm[axis] = bounds.high[axis] - bounds.low[axis];

@@ -69,7 +69,8 @@ Result<mesh::Soup> geometry_of(const ObjectEntry& object)
     return soup;
 }
 
-Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const LoadOptions& options)
+Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
+                           const LoadOptions& options)
 {
     auto soup = geometry_of(entry);
     if (!soup)
@@ -83,6 +84,7 @@ Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, cons
     object.file = entry.mesh;
     object.mesh = std::move(prepared->mesh);
     object.fans = mesh::make_fans(object.mesh);
+    object.rims = mesh::make_rims(object.mesh, material.radius_mm);
     object.report = std::move(prepared->report);
     object.pose = entry.pose;
     object.material = entry.material;
@@ -116,7 +118,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     }
     std::uint64_t first_face = 0, first_vertex = 0;
     for (const ObjectEntry& entry : entries->objects) {
-        auto object = make_object(*entries, entry, options);
+        auto object = make_object(*entries, entry, scene.materials[entry.material], options);
         if (!object)
             return object.error();
         object->first_face = static_cast<std::uint32_t>(first_face);

@@ -17,7 +17,7 @@ std::uint64_t Scene::patches() const
 {
     std::uint64_t sum = triangles();
     for (const Object& object : objects)
-        sum += object.fans.fans.size();
+        sum += object.fans.fans.size() + object.rims.edges.size();
     return sum;
 }
 

@@ -14,6 +14,7 @@
 #include "mesh/fans.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/prepare.hpp"
+#include "mesh/rims.hpp"
 
 namespace phantom::scene {
 
@@ -29,6 +30,7 @@ struct Object {
     std::filesystem::path file;
     mesh::Mesh mesh; ///< object frame, mm
     mesh::Fans fans; ///< of the mesh's creases
+    mesh::Rims rims; ///< where the mesh is open, for the material's contact radius
     mesh::Report report;
     fdh::Pose pose;
     std::uint32_t material = 0;                     ///< index into Scene::materials
@@ -56,7 +58,8 @@ struct Scene {
     ServoSettings servo;
 
     [[nodiscard]] std::uint64_t triangles() const;
-    /// Patches of a set that holds everything: triangles, and the fans of their creases.
+    /// Patches of a set that holds everything: triangles, the fans of their creases and
+    /// their rims.
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
     [[nodiscard]] double max_radius_mm() const;

@@ -9,7 +9,7 @@ namespace phantom::study {
 namespace {
 
 /// Vertices of the finest level that a coarser one is compared with.
-constexpr std::size_t vertices_compared = 20000;
+constexpr std::size_t vertices_compared = 5000;
 
 scene::Scene soft_scene(mesh::Mesh mesh)
 {

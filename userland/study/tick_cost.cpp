@@ -54,9 +54,12 @@ FloatSet prepared(const phantom_float_ops& ops, const device::PatchSet& set, dou
     piece.materials = set.materials.data();
     piece.patch_count = static_cast<u32>(set.patches.size());
     piece.material_count = static_cast<u32>(set.materials.size());
-    piece.face_count =
-        static_cast<u32>(std::count_if(set.patches.begin(), set.patches.end(),
-                                       [](const phantom_patch& p) { return p.kind == PHANTOM_PATCH_FACE; }));
+    const auto count = [&set](std::uint32_t kind) {
+        return static_cast<u32>(std::count_if(set.patches.begin(), set.patches.end(),
+                                              [kind](const phantom_patch& p) { return p.kind == kind; }));
+    };
+    piece.face_count = count(PHANTOM_PATCH_FACE);
+    piece.rim_count = count(PHANTOM_PATCH_RIM);
     microseconds = 1e-3 * nanoseconds_of([&] {
                        do {
                            piece.count =

@@ -82,6 +82,34 @@ TEST_F(Trace, APlateGivesStiffnessTimesNearness)
     }
 }
 
+/// At 1 um a tick out over the rim of the open plate, touching it and pressed in, and back.
+TEST_F(Trace, TheForceOfAPlateFadesBeforeItsRim)
+{
+    for (const char* model : {"paper", "projected"}) {
+        for (const double height : {0.4, -0.2}) {
+            std::string rows;
+            for (int i = 0; i <= 3200; ++i)
+                rows += fmt::format("{:.6f},{:.9f},1.3,{:.9f}\n", 0.001 * i, 8.0 + 0.0007 * std::min(i, 3000),
+                                    std::max(height, 2.0 - 0.01 * i));
+            const auto out =
+                trace(plate(), rows, {"--model", model, "--radius", "1.5", "--stiffness", "0.8"});
+            ASSERT_EQ(out.size(), 3201U);
+            int faded = 0;
+            for (std::size_t i = 1; i < out.size(); ++i) {
+                const auto& row = out[i];
+                const double away = 10.0 - row[row[inside] != 0 ? vx : x];
+                const double part = std::clamp(away / 1.5, 0.0, 1.0);
+                EXPECT_NEAR(row[fz], 0.8 * std::max(0.0, 1.5 - row[z]) * part, 2e-5)
+                    << model << " x " << row[x];
+                EXPECT_LE(std::abs(row[fz] - out[i - 1][fz]), 0.8 * (0.01 + 0.001)) << "x " << row[x];
+                faded += part < 1 && part > 0;
+            }
+            EXPECT_GT(faded, 1000);
+            EXPECT_LE(std::abs(out.back()[fz]), 2e-3) << "beyond the rim";
+        }
+    }
+}
+
 TEST_F(Trace, ASphereWithRadialNormalsPushesRadially)
 {
     std::string rows;

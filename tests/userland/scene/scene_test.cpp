@@ -60,7 +60,7 @@ TEST(Scene, TwoSidedSheetsAndCreasesBringTheirFans)
     folder.write("sheet.obj", "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n");
     const Scene one = loaded(folder.write("one.toml", "[[object]]\nmesh = \"sheet.obj\"\n"));
     EXPECT_EQ(one.triangles(), 2U);
-    EXPECT_EQ(one.patches(), 2U);
+    EXPECT_EQ(one.patches(), 2U + 4U) << "four rims";
     const Scene both =
         loaded(folder.write("both.toml", "[[object]]\nmesh = \"sheet.obj\"\ntwo_sided = true\n"));
     EXPECT_EQ(both.triangles(), 4U);

@@ -117,8 +117,10 @@ class Hand {
     {
         tip_ = at;
         check(device_->move_simulated_tip(feeder::to_nanometres(tip_)));
-        check(device_->start({}));
-        stay(0.3);
+        phantom_start start{};
+        start.ramp_ms = 20;
+        check(device_->start(start));
+        stay(0.03);
     }
     void stay(double seconds)
     {

@@ -137,7 +137,7 @@ static void kind_unknown(struct vm_plate* plate, int at)
 
 static void patch_reserved(struct vm_plate* plate, int at)
 {
-    last_patch(plate)->reserved[at / 32] = 1u << at % 32;
+    last_patch(plate)->reserved = 1u << at;
 }
 
 /* ---- material ---- */
@@ -222,7 +222,7 @@ static const struct fault faults[] = {
     {"object index", 4, object_out_of_range},
     {"material index", 4, material_out_of_range},
     {"kind bit", 32, kind_unknown},
-    {"patch reserved bit", 64, patch_reserved},
+    {"patch reserved bit", 32, patch_reserved},
     {"radius 0", 1, radius_zero},
     {"damping without its effect", 1, damping_without_its_effect},
     {"material effect bit", 32, material_effect},
