@@ -45,16 +45,22 @@ void phantom_safety_begin(struct phantom_safety *safety, const struct phantom_li
 }
 
 void phantom_safety_watch(struct phantom_safety *safety, u64 latency_ns, u64 elapsed_ns,
-			  u64 period_ns)
+			  u64 busy_ns, u64 period_ns)
 {
+	u64 patience_ns = PHANTOM_OVERLOAD_STALLS * safety->limits.stall_ns;
+	u64 allowed_ns = elapsed_ns / 8 * PHANTOM_OVERLOAD_PART;
+
 	safety->causes = 0;
+	safety->excess_ns += busy_ns;
+	safety->excess_ns -= min_t(u64, safety->excess_ns, allowed_ns);
 	if (elapsed_ns < 2 * period_ns)
 		safety->behind_ns = 0;
 	else
 		safety->behind_ns += elapsed_ns;
 	if (safety->limits.off)
 		return;
-	if (safety->behind_ns > PHANTOM_OVERLOAD_STALLS * safety->limits.stall_ns) {
+	if (safety->behind_ns > patience_ns ||
+	    safety->excess_ns > patience_ns / 8 * (8 - PHANTOM_OVERLOAD_PART)) {
 		safety->overloaded = true;
 		phantom_safety_raise(safety, PHANTOM_FAULT_STALL);
 	}

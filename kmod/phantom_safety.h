@@ -35,10 +35,12 @@
 #define PHANTOM_VELOCITY_TAU_NS 2000000
 
 /*
- * A servo that skips periods for that many stall limits on end cannot do the work it is asked for. A
- * thread of its priority would leave nothing of its CPU to anyone.
+ * A servo that skips periods, or computes all the time, for that many stall limits on end cannot do
+ * the work it is asked for. A thread of its priority would leave nothing of its CPU to anyone. What it
+ * computes beyond PHANTOM_OVERLOAD_PART parts of 8 of the time adds up, and quieter ticks pay it back.
  */
 #define PHANTOM_OVERLOAD_STALLS 10
+#define PHANTOM_OVERLOAD_PART 7
 
 /* Ramp of a servo whose feeder is gone. With the way there it stays within PHANTOM_FADE_NS. */
 #define PHANTOM_ABANDON_NS 15000000
@@ -61,6 +63,7 @@ struct phantom_safety {
 	bool stopping; /* the ramp goes down */
 	bool overloaded; /* until CLEAR_FAULT: contact is not worth the time it takes */
 	u64 behind_ns; /* how long every tick has skipped periods */
+	u64 excess_ns; /* computed beyond the part that is allowed */
 	u64 ramp_ns; /* how far up the ramp is, 0 ... limits.ramp_ns */
 	s32 force_un[3]; /* sent last */
 	bool tracking; /* tip_nm is known */
@@ -75,9 +78,11 @@ int phantom_safety_limits(struct phantom_limits *limits, const struct phantom_st
 void phantom_safety_begin(struct phantom_safety *safety, const struct phantom_limits *limits);
 
 /* ---- once a tick, in this order ------------------------------------------ */
-/* elapsed_ns: since the last tick; latency_ns: wake-up after the period's begin. */
+/*
+ * elapsed_ns: since the last tick, which took busy_ns; latency_ns: wake-up after the period's begin.
+ */
 void phantom_safety_watch(struct phantom_safety *safety, u64 latency_ns, u64 elapsed_ns,
-			  u64 period_ns);
+			  u64 busy_ns, u64 period_ns);
 void phantom_safety_track(struct phantom_safety *safety, const s64 tip_nm[3], u64 elapsed_ns,
 			  u64 period_ns);
 /* Anyone's finding in this tick: PHANTOM_FAULT_... */

@@ -545,6 +545,7 @@ static void phantom_servo_publish(struct phantom_servo *servo, const struct phan
 
 	next->time_ns = pass->now_ns;
 	next->busy_ns += duration;
+	servo->busy_ns = duration;
 	memcpy(next->tip_nm, pass->tip_nm, sizeof(next->tip_nm));
 	memcpy(next->proxy_nm, pass->proxy_nm, sizeof(next->proxy_nm));
 	memcpy(next->normal_q30, pass->normal_q30, sizeof(next->normal_q30));
@@ -624,7 +625,8 @@ static void phantom_servo_tick(struct phantom_servo *servo, u64 now_ns, u64 peri
 	servo->last_ns = now_ns;
 	phantom_servo_take_set(servo, &pass);
 	phantom_servo_take_model(servo, &pass);
-	phantom_safety_watch(&servo->safety, now_ns - servo->next_ns, pass.elapsed_ns, period_ns);
+	phantom_safety_watch(&servo->safety, now_ns - servo->next_ns, pass.elapsed_ns,
+			     servo->busy_ns, period_ns);
 	phantom_servo_sense(servo, &pass);
 	phantom_servo_contact(servo, &pass);
 	phantom_servo_act(servo, &pass);
@@ -673,6 +675,7 @@ void phantom_servo_set_clock(struct phantom_servo *servo)
 		servo->stats.next.start_ns = now;
 	servo->next_ns = now + NSEC_PER_SEC / READ_ONCE(servo->rate_hz);
 	servo->last_ns = now;
+	servo->busy_ns = 0;
 	servo->woken_ns = now;
 	servo->reminded_ns = now;
 }

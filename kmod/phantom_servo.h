@@ -125,6 +125,7 @@ struct phantom_servo {
 	u64 crossfade_ns; /* from one geometry to another */
 	u64 next_ns; /* begin of the next period */
 	u64 last_ns; /* time of the last tick */
+	u64 busy_ns; /* what the last tick took */
 	u64 woken_ns; /* when readers were woken last */
 	u64 reminded_ns; /* when POLLPRI was raised last for want of a set */
 	bool reached; /* the last tick's force was computed, not faded out */

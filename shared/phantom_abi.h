@@ -232,7 +232,7 @@
 
 #define PHANTOM_FAULT_DEVICE (1U << 0) /* reading or writing the device failed */
 #define PHANTOM_FAULT_OVERSPEED (1U << 1) /* the tip moved faster than start.max_speed_um_s */
-/* a tick came later than start.stall_us, or for ten times that long every tick skipped periods */
+/* a tick came later than start.stall_us, or for ten times that long it skipped periods or only computed */
 #define PHANTOM_FAULT_STALL (1U << 2)
 #define PHANTOM_FAULT_NUMERIC (1U << 3) /* a float section gave a value that is no number */
 #define PHANTOM_FAULT_UNPLUGGED (1U << 4)

@@ -112,7 +112,7 @@ static int um_device_init(struct phantom_um *machine, u32 max_force_un)
 const struct phantom_float_ops *const *phantom_um_sections(void)
 {
 	static const struct phantom_float_ops *const all[] = {
-		&phantom_float_avx512, &phantom_float_avx2, &phantom_float_sse2,
+		&phantom_float_avx512, &phantom_float_avx2,  &phantom_float_sse2,
 		&phantom_float_double, &phantom_float_fixed, NULL};
 
 	if (phantom_platform_has_avx512())
@@ -257,6 +257,7 @@ int phantom_um_replay(struct phantom_um *machine, const struct phantom_tick *rec
 		smp_store_release(&servo->stop_wanted, PHANTOM_WISH_STOP);
 	result = phantom_virtual_clock_replay(&machine->clock.virtual, record->tick,
 					      record->time_ns, due_ns);
+	servo->busy_ns = record->duration_ns;
 	WRITE_ONCE(device->error, 0);
 	WRITE_ONCE(device->write_error, 0);
 	return result;

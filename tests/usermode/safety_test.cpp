@@ -150,6 +150,42 @@ TEST_F(Safety, OverloadIsAFaultAndEndsTheWork)
     EXPECT_GT(feeder.status().force_un[2], 0);
 }
 
+/// Nor may one that is never late but computes nearly all the time.
+TEST_F(Safety, ComputingNearlyAllTheTimeIsAnOverload)
+{
+    File feeder(machine);
+    begin(feeder, {}, 2'000'000);
+    step(500);
+    ASSERT_GT(feeder.status().force_un[2], 0);
+    const auto busy_steps = [&](int ticks, std::uint32_t duration_ns) {
+        phantom_tick record{};
+        record.tick = feeder.status().tick;
+        record.time_ns = feeder.status().time_ns;
+        record.tip_nm[2] = 2'000'000;
+        record.duration_ns = duration_ns;
+        for (int i = 0; i < ticks; ++i) {
+            ++record.tick;
+            record.time_ns += 1'000'000;
+            ASSERT_EQ(phantom_um_replay(machine, &record, record.time_ns), 1);
+        }
+    };
+    busy_steps(2000, 850'000);
+    EXPECT_EQ(feeder.status().faults, 0U) << "seven eighths of the time are allowed";
+    busy_steps(300, 950'000); // 0.075 ms too much each, 25 ms are the limit
+    EXPECT_EQ(feeder.status().faults, 0U);
+    busy_steps(30, 10'000); // quiet ones: it was not on end
+    busy_steps(300, 950'000);
+    EXPECT_EQ(feeder.status().faults, 0U);
+    busy_steps(60, 950'000);
+    EXPECT_EQ(feeder.status().faults, PHANTOM_FAULT_STALL);
+    EXPECT_EQ(feeder.status().contacts, 0U);
+    step(10);
+    ASSERT_EQ(feeder.ioctl(PHANTOM_CLEAR_FAULT), 0);
+    step(500);
+    EXPECT_EQ(feeder.status().faults, 0U);
+    EXPECT_GT(feeder.status().force_un[2], 0);
+}
+
 TEST_F(Safety, ClampKeepsTheDirection)
 {
     File feeder(machine);
