@@ -104,10 +104,9 @@ struct projected_root {
 	struct real3 normal; /* n */
 	real height; /* h |N| */
 	real magnitude; /* k (R - h |N|) */
-	real weight; /* 0 ... 1, of the soft walls */
+	real weight; /* 0 ... 1: less than 1 next to a wall, window.h */
 	real sign; /* +1, or -1 where the shell has folded over */
 	u32 patch;
-	u32 soft_walls; /* walls on which the tip lies, but for rounding */
 };
 
 #define PROJECTED_ROOTS 3 /* a patch has at most that many: its equation is a cubic */
@@ -121,7 +120,7 @@ union scratch {
 	struct projected_root projected[PHANTOM_BLOCK * PROJECTED_ROOTS];
 };
 
-/* Of struct shell_scratch. */
+/* Of struct shell_state. */
 #define SHELL_SCRATCH_BYTES 2048
 
 struct phantom_float_set {
@@ -131,7 +130,7 @@ struct phantom_float_set {
 	u32 rim_block_count; /* struct rim_block, they follow */
 	u32 material_count;
 	u32 refused;
-	u64 scratch_offset; /* from the set's begin, bytes: union scratch of each block, shell_scratch */
+	u64 scratch_offset; /* from the set's begin, bytes: union scratch of each block, shell_state */
 	/*
 	 * Largest extent of a patch and largest contact radius, mm: they bound every distance
 	 * that is computed, hence every rounding error. See rounding_mm().

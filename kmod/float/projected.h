@@ -33,25 +33,23 @@
  * one corner, its two long walls stay within rounding of one another, so a fourth wall stands
  * across that end: (1 - b0) |e| from it.
  *
- * Walls are soft. Rounding would let a tip on a common wall count twice or not at all, so a root
- * has the weight clamp((w_i + e) / 2e, 0, 1) for each wall, w_i the distance from the wall,
+ * Walls are soft: a root next to one has the weight that window.h gives it. For each wall, with E_i
+ * the offset edge, s the sign and w_i the distance from it,
  *
- *   w_i = b_i |A.N| / |N x E_i|,    E_i the offset edge
+ *   w_i = b_i |A.N| / |N x E_i|        inward: s N x E_i / |N x E_i|
  *
- * which is the same distance from both sides: the two weights add up to 1, and they cancel where
- * one of the two has folded over. e is a few rounding errors (nm). Where more than two patches
- * meet, on the line of a vertex normal, the weights add up to something else; they are divided
- * by their sum over the roots of one sign and height that share the vertex.
+ * which are the same from both sides. The window is a few rounding errors wide (nm).
  */
 #ifndef PHANTOM_FLOAT_PROJECTED_H
 #define PHANTOM_FLOAT_PROJECTED_H
 
 #include "paper.h"
 #include "combine.h"
+#include "window.h"
 
 #define MONOTONE_PART REAL(0.25)
 
-/* Half the width of a soft wall, in units of rounding_mm(). */
+/* Inner radius of the window, in units of rounding_mm(). */
 #define SOFT_WALL 8
 
 /*
@@ -66,18 +64,8 @@
  */
 #define FOUND_AGAIN REAL(1e-3)
 
-/*
- * Two patches that meet where the tip is find the same root there: in height but for that many
- * rounding_mm(), in normal but for that many radians.
- */
-#define SAME_SHEET_HEIGHT 512
-#define SAME_SHEET_TURN REAL(0.01)
-
 /* Bisection alone needs that many steps for float32's 24 bits; float64 ends as near as Newton gets. */
 #define BRACKET_STEPS 32
-
-/* Roots among which the weights at a vertex are divided; bounds the pairs that are looked at. */
-#define SHEET_ROOTS_MAX 64
 
 struct cubic {
 	lanes c0, c1, c2, c3;
@@ -98,7 +86,10 @@ struct step_roots {
 struct shell_point {
 	mask_lanes accepted;
 	struct lanes3 normal; /* n */
-	lanes height, magnitude, weight, soft_walls;
+	lanes height, magnitude;
+	mask_lanes near_wall;
+	lanes part[3]; /* b |A.n| of each corner's b */
+	lanes beyond; /* 1 - b0 */
 };
 
 LANES_INLINE lanes cubic_at(const struct cubic *c, lanes h)
@@ -263,19 +254,6 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 	return rounds;
 }
 
-/* clamp((w + e) / 2e, 0, 1) for a wall: `area` is b_i |A.N|. Counts walls that are soft. */
-LANES_INLINE lanes soft_wall(lanes area, struct lanes3 normal, struct lanes3 edge, real soft,
-			     lanes *soft_walls)
-{
-	struct lanes3 across = lanes3_cross(normal, edge);
-	lanes distance = divide(area, lanes_max(lanes3_length(across), lanes_all(REAL_TINY)));
-	lanes weight = mul(distance + soft, lanes_all(divide(REAL(0.5), soft)));
-
-	weight = lanes_min(lanes_max(weight, lanes_all(0)), lanes_all(REAL(1)));
-	*soft_walls += lanes_keep((weight > 0) & (weight < REAL(1)), lanes_all(1));
-	return weight;
-}
-
 /* Is the root in the shell, and what does it give? */
 LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
 				   lanes h, mask_lanes valid, mask_lanes split, real rounding,
@@ -343,33 +321,50 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const st
 	out->height = mul(h, length);
 	out->normal = lanes3_over(n, lanes_select(valid, length, one));
 	out->magnitude = lanes_limit_force(mul(block->stiffness[step], radius - out->height));
-	out->weight = one;
-	out->soft_walls = lanes_all(0);
 	near_wall = valid & ((mul(b0, turned) <= reach) | (mul(b1, turned) <= reach) |
 			     (mul(b2, turned) <= reach));
+	out->near_wall = near_wall;
 	if (!mask_bits(near_wall))
 		return;
 	turned = lanes_max(turned, mul(mul(mul(lanes3_length(area), block->area[step]), power),
 				       lanes_all(IN_PLANE)));
-	out->weight = mul(mul(soft_wall(mul(b2, turned), n, e1, soft, &out->soft_walls),
-			      soft_wall(mul(b1, turned), n, e2, soft, &out->soft_walls)),
-			  soft_wall(mul(b0, turned), n, e0, soft, &out->soft_walls));
-	/* a lane's result must not depend on who shares its step */
-	out->weight = lanes_select(near_wall, out->weight, one);
-	out->soft_walls = lanes_keep(near_wall, out->soft_walls);
-	if (fan) {
-		struct lanes3 along = row3_step(&block->edge[0].along, step);
-		lanes beyond = mul(one - b0, lanes3_length(along));
-		lanes end =
-			lanes_min(lanes_max(mul(beyond + soft, lanes_all(divide(REAL(0.5), soft))),
-					    lanes_all(0)),
-				  one);
+	out->part[0] = divide(mul(b0, turned), length);
+	out->part[1] = divide(mul(b1, turned), length);
+	out->part[2] = divide(mul(b2, turned), length);
+	out->beyond = one - b0;
+}
 
-		out->weight =
-			mul(out->weight,
-			    lanes_select(near_wall & (block->order[step] < REAL(2)), end, one));
+/* The part of the window that a root next to a wall has. */
+LANES_NOINLINE real shell_weight(const struct block *block, u32 lane, const struct shell_point *at,
+				 real h, real sign, real soft, bool fan)
+{
+	u32 l = lane % PHANTOM_LANES, count = 0, i;
+	struct real3 n = lanes3_lane(at->normal, l), x, y;
+	struct window_wall wall[WINDOW_WALLS];
+
+	window_axes(n, &x, &y);
+	for (i = 0; i < 3; i++) {
+		const struct paper_edge *edge = &block->edge[i];
+		struct real3 across = real3_cross(
+			n, real3_add(row3_lane(&edge->along, lane),
+				     real3_scale(row3_lane(&edge->normal_along, lane), h)));
+		real length = real_max(real3_length(across), REAL_TINY);
+		struct real3 inward = real3_scale(real3_unit(across), sign);
+
+		/* edge i lies opposite to corner i + 2 */
+		wall[count].distance = divide(divide(at->part[(i + 2) % 3][l], length), soft);
+		wall[count].inward.x = real3_dot(inward, x);
+		wall[count++].inward.y = real3_dot(inward, y);
 	}
-	out->accepted = valid & (out->weight > 0);
+	if (fan && row_lane(block->order, lane) < REAL(2)) {
+		struct real3 along = row3_lane(&block->edge[0].along, lane);
+		struct real3 inward = real3_unit(along);
+
+		wall[count].distance = divide(mul(at->beyond[l], real3_length(along)), soft);
+		wall[count].inward.x = real3_dot(inward, x);
+		wall[count++].inward.y = real3_dot(inward, y);
+	}
+	return window_part(wall, count);
 }
 
 /* Appends the roots of a step to `list`, patch by patch; returns how many. */
@@ -377,13 +372,13 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 				 real rounding, u32 newton_steps, u32 first_patch, bool fan,
 				 struct projected_root *list)
 {
+	const real soft = SOFT_WALL * rounding;
 	struct lanes3 q = from_corner(block, step, 0, tip);
 	lanes height = lanes3_dot(row3_step(&block->face_normal, step), q);
 	/* a first guess alone, without a Newton step, may take a tip beside the shell for one in it */
 	lanes lean = newton_steps ? block->lean[step] : lanes_all(REAL(LEAN_MOST));
-	mask_lanes candidates =
-		(lanes_abs(height) < block->radius[step]) &
-		within_shell(block, step, q, height, lean, lanes_all(4 * SOFT_WALL * rounding));
+	mask_lanes candidates = (lanes_abs(height) < block->radius[step]) &
+				within_shell(block, step, q, height, lean, lanes_all(4 * soft));
 	struct shell_point point[PROJECTED_ROOTS];
 	struct step_roots roots;
 	struct cubic c;
@@ -405,63 +400,19 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 			list[count].normal = lanes3_lane(point[i].normal, l);
 			list[count].height = point[i].height[l];
 			list[count].magnitude = point[i].magnitude[l];
-			list[count].weight = point[i].weight[l];
 			list[count].sign = roots.sign[i][l];
-			list[count].soft_walls = (u32)(s32)point[i].soft_walls[l];
+			list[count].weight = REAL(1);
+			if (point[i].near_wall[l])
+				list[count].weight =
+					shell_weight(block, step * PHANTOM_LANES + l, &point[i],
+						     roots.h[i][l], roots.sign[i][l], soft, fan);
+			if (!(list[count].weight > 0))
+				continue;
 			list[count].patch = first_patch + l;
 			count++;
 		}
 	}
 	return count;
-}
-
-static inline bool shares_vertex(const struct phantom_float_set *set, u32 a, u32 b)
-{
-	const struct block *block_a = &set->blocks[a / PHANTOM_BLOCK];
-	const struct block *block_b = &set->blocks[b / PHANTOM_BLOCK];
-	u32 i, j;
-
-	for (i = 0; i < 3; i++)
-		for (j = 0; j < 3; j++)
-			if (block_a->vertex[i][a % PHANTOM_BLOCK] ==
-			    block_b->vertex[j][b % PHANTOM_BLOCK])
-				return true;
-	return false;
-}
-
-/* Are these the same root, found by two patches that meet where the tip is? */
-static inline bool same_sheet(const struct phantom_float_set *set, const struct projected_root *a,
-			      const struct projected_root *b, real height)
-{
-	struct real3 turn = real3_sub(a->normal, b->normal);
-
-	return (a->soft_walls || b->soft_walls) && a->sign == b->sign &&
-	       real_abs(a->height - b->height) <= height &&
-	       real3_dot(turn, turn) <= mul(SAME_SHEET_TURN, SAME_SHEET_TURN) &&
-	       shares_vertex(set, a->patch, b->patch);
-}
-
-/*
- * The weight of root i where patches meet: divided by what the roots of its sheet weigh together, so
- * that one sheet weighs 1.
- */
-static inline real sheet_weight(const struct phantom_float_set *set,
-				const struct projected_root *roots, u32 count, u32 i)
-{
-	real height = SAME_SHEET_HEIGHT * rounding_mm(set), sum = 0, whole;
-	u32 j;
-
-	for (j = 0; j < count; j++)
-		if (j != i && same_sheet(set, &roots[i], &roots[j], height))
-			sum += roots[j].weight;
-	/*
-	 * A root that no neighbour shares ends at its wall, or meets a folded one there: it keeps
-	 * its weight. In between the divisor goes over without a step.
-	 */
-	whole = sum + roots[i].weight;
-	if (whole < REAL(1))
-		whole += mul(REAL(1) - whole, real_max(0, REAL(1) - 16 * sum));
-	return divide(roots[i].weight, whole);
 }
 
 /* The roots over a block, patch by patch; returns how many. */

@@ -92,7 +92,7 @@ static inline void section_finish(struct phantom_float_job *job, struct contact_
 
 static bool section_tick(struct phantom_float_job *job)
 {
-	struct shell_state *state = &shell_scratch(job->set)->state;
+	struct shell_state *state = shell_state(job->set);
 	u32 spent = 0;
 
 	if (!job->more) {

@@ -9,8 +9,8 @@
  * the next section. Pieces are always done in the same order: where sections end changes no bit.
  *
  *   projected   BLOCKS  roots over faces and fans      paper   BLOCKS   contacts with faces, over fans
- *               WEIGHTS of roots that share a wall             PLANES   of the overlap test
- *               SUM                                            FANS     overlapped by faces
+ *               SUM                                            PLANES   of the overlap test
+ *                                                              FANS     overlapped by faces
  *                                                              OVERLAP  among faces
  *                                                              SUM
  *
@@ -31,7 +31,7 @@
 
 #define SHELL_COST_BLOCK 500U /* of sixteen patches out of reach */
 #define SHELL_COST_ROOT 300U /* beside that, for each found */
-#define SHELL_COST_PAIR 10U /* of roots at a wall */
+#define SHELL_COST_SOFT 2000U /* of a root next to a wall: the window, clipped four times */
 #define SHELL_COST_SUM 30U /* of a root or contact */
 #define SHELL_COST_RIMS 250U /* of sixteen rims, for a root or contact of an open surface */
 #define SHELL_COST_PLANES 40U /* of a step */
@@ -39,12 +39,11 @@
 
 /* What comes next. */
 #define SHELL_BLOCKS 0U
-#define SHELL_WEIGHTS 1U
-#define SHELL_PLANES 2U
-#define SHELL_FANS 3U
-#define SHELL_OVERLAP 4U
-#define SHELL_SUM 5U
-#define SHELL_DONE 6U
+#define SHELL_PLANES 1U
+#define SHELL_FANS 2U
+#define SHELL_OVERLAP 3U
+#define SHELL_SUM 4U
+#define SHELL_DONE 5U
 
 /* Between two sections of a tick; in the set's scratch. */
 struct shell_state {
@@ -52,26 +51,22 @@ struct shell_state {
 	struct columns columns; /* paper: faces */
 	struct real3 sum; /* projected: roots; paper: fans */
 	real most, forces, damping;
+	real shared; /* projected: what the parts of roots next to walls add up to */
+	real share; /* and what makes a whole number of it */
 	u32 phase;
 	u32 cursor; /* in whatever the phase goes through */
 	u32 count; /* projected: roots; paper: steps with a contact */
 	u32 fans; /* paper: contacts over fans found, then left */
 	u32 fans_looked_at;
-	u32 soft; /* projected: some root lies on a soft wall */
 };
 
-struct shell_scratch {
-	struct shell_state state;
-	real weight[SHEET_ROOTS_MAX]; /* projected: of the first roots, divided */
-};
+_Static_assert(sizeof(struct shell_state) <= SHELL_SCRATCH_BYTES, "grow SHELL_SCRATCH_BYTES");
 
-_Static_assert(sizeof(struct shell_scratch) <= SHELL_SCRATCH_BYTES, "grow SHELL_SCRATCH_BYTES");
-
-static inline struct shell_scratch *shell_scratch(const struct phantom_float_set *set)
+static inline struct shell_state *shell_state(const struct phantom_float_set *set)
 {
-	return (struct shell_scratch *)((u8 *)scratch_paper(set) +
-					(u64)(set->block_count + set->fan_block_count) *
-						sizeof(union scratch));
+	return (struct shell_state *)((u8 *)scratch_paper(set) +
+				      (u64)(set->block_count + set->fan_block_count) *
+					      sizeof(union scratch));
 }
 
 static inline void shell_next(struct shell_state *state, u32 phase)
@@ -142,34 +137,19 @@ static inline u32 shell_projected_blocks(const struct phantom_float_job *job,
 		u32 first = state->count;
 
 		state->count += projected_block(set, state->cursor++, &tip, steps, &roots[first]);
-		spent += SHELL_COST_BLOCK + SHELL_COST_ROOT * (state->count - first);
-		for (; first < state->count; first++)
-			state->soft |= roots[first].soft_walls;
+		spent += SHELL_COST_BLOCK;
+		for (; first < state->count; first++) {
+			spent += SHELL_COST_ROOT;
+			if (roots[first].weight < REAL(1)) {
+				spent += SHELL_COST_SOFT;
+				state->shared += mul(roots[first].sign, roots[first].weight);
+			}
+		}
 	}
 	if (state->cursor == blocks) {
 		state->out.contacts = state->count;
-		shell_next(state, !state->count ? SHELL_DONE
-				  : state->soft ? SHELL_WEIGHTS
-						: SHELL_SUM);
-	}
-	return spent;
-}
-
-static inline u32 shell_weights(const struct phantom_float_set *set, struct shell_state *state)
-{
-	struct projected_root *roots = scratch_projected(set);
-	real *weight = shell_scratch(set)->weight;
-	u32 count = state->count < SHEET_ROOTS_MAX ? state->count : SHEET_ROOTS_MAX;
-	u32 spent = 0, i;
-
-	for (; state->cursor < count && spent < SHELL_PIECE; state->cursor++) {
-		weight[state->cursor] = sheet_weight(set, roots, count, state->cursor);
-		spent += SHELL_COST_PAIR * count;
-	}
-	if (state->cursor == count) {
-		for (i = 0; i < count; i++)
-			roots[i].weight = weight[i];
-		shell_next(state, SHELL_SUM);
+		state->share = window_share(state->shared);
+		shell_next(state, state->count ? SHELL_SUM : SHELL_DONE);
 	}
 	return spent;
 }
@@ -187,7 +167,8 @@ static inline u32 shell_projected_sum(const struct phantom_float_job *job,
 		const struct projected_root *root = &scratch_projected(set)[state->cursor];
 		const struct float_material *material = shell_material(set, root->patch);
 		real fade = shell_root_fade(job, root);
-		real magnitude = mul(mul(root->weight, root->magnitude), fade);
+		real weight = root->weight < REAL(1) ? mul(root->weight, state->share) : REAL(1);
+		real magnitude = mul(mul(weight, root->magnitude), fade);
 
 		state->sum = real3_add(state->sum,
 				       real3_scale(root->normal, mul(root->sign, magnitude)));
@@ -398,8 +379,6 @@ static inline u32 shell_piece(const struct phantom_float_job *job, struct shell_
 	switch (state->phase) {
 	case SHELL_BLOCKS:
 		return paper ? shell_paper_blocks(job, state) : shell_projected_blocks(job, state);
-	case SHELL_WEIGHTS:
-		return shell_weights(job->set, state);
 	case SHELL_PLANES:
 		return shell_planes(job, state);
 	case SHELL_FANS:

@@ -384,6 +384,7 @@ TEST(SwapOnAWall, ChangesTheForceByRounding)
 {
     expect_rounding_only_on_walls(load("sphere.toml"));
     expect_rounding_only_on_walls(load("box.toml"));
+    expect_rounding_only_on_walls(load("bunny.toml"));
 }
 
 } // namespace
