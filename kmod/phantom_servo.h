@@ -134,7 +134,8 @@ struct phantom_servo {
 };
 
 /*
- * patches_max: PHANTOM_PATCHES_MAX, or more in user mode. ops: by arithmetic; all but FLOAT's may be NULL. 0 or -errno.
+ * patches_max: PHANTOM_PATCHES_MAX, or more in user mode. ops: by arithmetic; all but FLOAT's may be
+ * NULL. 0 or -errno.
  * The servo owns neither clock nor device. Process context, as destroy().
  */
 int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,

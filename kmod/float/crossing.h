@@ -98,9 +98,8 @@ static inline void nm_offset(const s32 from[3], struct real3 by, s32 out[3])
 	const real way[3] = {by.x, by.y, by.z};
 	u32 axis;
 
-	for (axis = 0; axis < 3; axis++) {
+	for (axis = 0; axis < 3; axis++)
 		out[axis] = nm_place(from[axis] + real_to_nm(way[axis]));
-	}
 }
 
 /* to - from, mm. */

@@ -122,7 +122,7 @@ LANES_INLINE lanes lanes_mul_sum(lanes a, lanes b, lanes c, lanes d, lanes e, la
 
 LANES_INLINE u64 fixed_high(u64 a, u64 b)
 {
-	return (u64)((unsigned __int128)a * b >> 64);
+	return (u64)((__uint128_t)a * b >> 64);
 }
 
 /*
@@ -165,8 +165,8 @@ static inline real real_length(real x, real y, real z)
 {
 	u64 a = fixed_magnitude(x), b = fixed_magnitude(y), c = fixed_magnitude(z);
 	u64 most = a | b | c;
-	unsigned __int128 sum;
 	s32 shift;
+	__uint128_t sum;
 
 	if (!most)
 		return 0;
@@ -176,7 +176,7 @@ static inline real real_length(real x, real y, real z)
 	a <<= shift;
 	b <<= shift;
 	c <<= shift;
-	sum = (unsigned __int128)a * a + (unsigned __int128)b * b + (unsigned __int128)c * c;
+	sum = (__uint128_t)a * a + (__uint128_t)b * b + (__uint128_t)c * c;
 	return (real)(fixed_root((u64)(sum >> 64)) >> shift);
 }
 

@@ -18,11 +18,11 @@
  *
  *   S = sum s k (R - h|N|) n        F = S min(1, kR / |S|)
  *
- * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than
- * 1 / MONOTONE_PART fold (its Bernstein coefficients say so), there is one root or none, and from -c0/c1 it is
- * found in model.newton_steps steps: the accuracy knob. They are Halley's, a Newton step with the
- * curvature in it: an error of e becomes e^3, not e^2, for the same one division. Elsewhere the interval is split at the
- * critical points and each part that changes sign is solved by Newton kept in its bracket.
+ * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than 1 / MONOTONE_PART
+ * fold (its Bernstein coefficients say so), there is one root or none, and from -c0/c1 it is found in
+ * model.newton_steps steps: the accuracy knob. They are Halley's, a Newton step with the curvature in
+ * it: an error of e becomes e^3, not e^2, for the same one division. Elsewhere the interval is split
+ * at the critical points and each part that changes sign is solved by Newton kept in its bracket.
  *
  * Fans. Over an edge with two normals at an end, and over a vertex with three and more, the shell
  * is that of a triangle whose corners coincide: A0 = 0, and over a vertex A1 = 0 too. Divided by h,

@@ -98,8 +98,7 @@ static inline wide wide_sub(wide a, wide b)
 
 static inline wide wide_mul(wide a, wide b)
 {
-	unsigned __int128 product =
-		(unsigned __int128)(wide_mantissa(a) << 11) * (wide_mantissa(b) << 11);
+	__uint128_t product = (__uint128_t)(wide_mantissa(a) << 11) * (wide_mantissa(b) << 11);
 	u64 high = (u64)(product >> 64) | ((u64)product != 0);
 
 	return wide_round((a.bits ^ b.bits) & WIDE_SIGN, high,
@@ -121,22 +120,22 @@ static inline wide wide_div(wide a, wide b)
 static inline wide wide_sqrt(wide a)
 {
 	s32 exponent = wide_exponent(a);
-	unsigned __int128 square;
+	__uint128_t square;
 	u64 root;
 
 	if (!wide_mantissa(a) || a.bits & WIDE_SIGN)
 		return (wide){0};
 	/* mantissa 2^(72 or 73), so that what is left of the exponent is even; 2^124 ... 2^126 */
-	square = (unsigned __int128)wide_mantissa(a) << (exponent & 1 ? 73 : 72);
+	square = (__uint128_t)wide_mantissa(a) << (exponent & 1 ? 73 : 72);
 	exponent -= exponent & 1 ? 73 : 72;
 	root = fixed_root((u64)(square >> 64));
 	/* one more Newton step, then to the last bit */
 	root = root / 2 + fixed_divide_wide((u64)(square >> 64), (u64)square, root, NULL) / 2;
-	while ((unsigned __int128)root * root > square)
+	while ((__uint128_t)root * root > square)
 		root--;
-	while ((unsigned __int128)(root + 1) * (root + 1) <= square)
+	while ((__uint128_t)(root + 1) * (root + 1) <= square)
 		root++;
-	return wide_round(0, root | ((unsigned __int128)root * root != square), exponent / 2);
+	return wide_round(0, root | ((__uint128_t)root * root != square), exponent / 2);
 }
 
 LANES_INLINE bool wide_less(wide a, wide b)
