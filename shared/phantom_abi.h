@@ -61,8 +61,9 @@
  *   older than start.stale_ms (counted from the tick that took it): set a new one at least that
  *   often. A tip more than 1.147 m (2^31 - 1 nm less 1 m) from the origin along an axis is not
  *   covered, and a radius of more than 2 m counts as 2 m.
- *   A swap between two sets that both cover the tip changes the force by rounding only. The force also fades, from what it is to what it shall be, when coverage comes back,
- *   the model changes, or a set without patches follows one with.
+ *   A swap between two sets that both cover the tip changes the force by rounding only. The force
+ *   also fades, from what it is to what it shall be, when coverage comes back, the model changes, or
+ *   a set without patches follows one with.
  *   An uncovered tip keeps its state (inside, proxy) for PHANTOM_MEMORY_NS. Covered again in
  *   time, it is looked for on the straight path from where it was last covered, and found inside
  *   when that crossed the surface. After longer it counts as outside: no force until it has left
