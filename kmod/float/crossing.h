@@ -179,6 +179,9 @@ LANES_INLINE mask_lanes crossing_candidates(const struct block *block, u32 step,
 	lanes end = lanes3_dot(g, q), begin;
 	mask_lanes candidates = way == CROSSING_INWARD ? end < 0 : end >= 0;
 
+	/* the usual tick: a tip that is over all of them */
+	if (!mask_bits(candidates))
+		return candidates;
 	candidates &= within_reach(block, step, q, lanes_all(segment->length));
 	if (!mask_bits(candidates))
 		return candidates;
