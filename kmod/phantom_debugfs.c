@@ -13,7 +13,7 @@ static const char *const phantom_model_names[] = {"off", "paper", "projected"};
 static const char *const phantom_combine_names[] = {"paper", "bounded"};
 static const char *const phantom_proxy_names[] = {"off", "paper", "constrained"};
 static const char *const phantom_arith_names[] = {"float", "fixed", "double"};
-static const char *const phantom_isa_names[] = {"none",   "sse2",   "avx2",
+static const char *const phantom_isa_names[] = {"none",	  "sse2",   "avx2",
 						"double", "avx512", "fixed"};
 
 #define phantom_name(names, index) ((index) < ARRAY_SIZE(names) ? (names)[index] : "unknown")

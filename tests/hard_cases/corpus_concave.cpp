@@ -67,8 +67,8 @@ std::vector<Case> folds()
     out.push_back(within(Kind::folds, "finer dent, on its axis of symmetry", star(3, dented).triangles(1, 12),
                          12, {{{{0, 0, 6.05}, {0, 0, 14}}}}));
     out.back().near_mm = 5;
-    out.back().fault =
-        "on the line of a vertex normal where all shells of its ring have folded float32 and fixed point lose roots";
+    out.back().fault = "on the line of a vertex normal where all shells of its ring have folded float32 and "
+                       "fixed point lose roots";
     out.push_back(
         within(Kind::folds, "bowl, R beyond its curvature",
                field(8, 2, [](double x, double y) { return 0.5 * (x * x + y * y); }).triangles(1, 1.5), 1.5,
