@@ -145,6 +145,7 @@ std::uint64_t count_loops(const Mesh& mesh, const std::vector<LooseEdge>& rims)
     for (const LooseEdge& e : rims)
         groups.join(e.from_point, e.to_point);
     std::vector<std::uint32_t> loops;
+    loops.reserve(rims.size());
     for (const LooseEdge& e : rims)
         loops.push_back(groups.find(e.from_point));
     std::sort(loops.begin(), loops.end());
