@@ -3,8 +3,8 @@
 // Vertex Normals from Polygonal Facets"): independent of how a flat part is cut into triangles.
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
+#include "mesh/groups.hpp"
 #include "mesh/steps.hpp"
 #include "mesh/vector.hpp"
 
@@ -32,41 +32,16 @@ double corner_angle(const Soup& soup, const Triple& face, std::size_t corner)
                          subtract(soup.vertices[face[(corner + 2) % 3]], at));
 }
 
-/// Sets of corners (3 f + i), joined.
-class CornerGroups {
-  public:
-    explicit CornerGroups(std::size_t corners) : parent_(corners)
-    {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    /// The smallest corner of the group.
-    std::uint32_t first(std::uint32_t corner)
-    {
-        while (parent_[corner] != corner)
-            corner = parent_[corner] = parent_[parent_[corner]];
-        return corner;
-    }
-    void join(std::uint32_t a, std::uint32_t b)
-    {
-        a = first(a);
-        b = first(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
-
 std::uint32_t corner_of(const Triple& face, std::uint32_t vertex)
 {
     return face[0] == vertex ? 0 : face[1] == vertex ? 1 : 2;
 }
 
-/// Joins the corners on either end of every edge that is no crease.
-CornerGroups group_corners(const Soup& soup, const std::vector<Triple>& neighbours,
-                           const std::vector<Vec3>& face_normals, double crease_deg, Report& report)
+/// Corners are numbered 3 f + i. Joins those on either end of every edge that is no crease.
+Groups group_corners(const Soup& soup, const std::vector<Triple>& neighbours,
+                     const std::vector<Vec3>& face_normals, double crease_deg, Report& report)
 {
-    CornerGroups groups(3 * soup.faces.size());
+    Groups groups(3 * soup.faces.size());
     // At 180 degrees nothing is a crease, whatever rounding makes of two opposite normals.
     const double crease_cosine = crease_deg < 180.0 ? std::cos(crease_deg * std::numbers::pi / 180.0) : -2.0;
     for (std::uint32_t f = 0; f < soup.faces.size(); ++f) {
@@ -98,7 +73,7 @@ struct Sum {
 void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double crease_deg, Report& report)
 {
     const std::vector<Vec3> faces = face_normals_of(soup);
-    CornerGroups groups = group_corners(soup, neighbours, faces, crease_deg, report);
+    Groups groups = group_corners(soup, neighbours, faces, crease_deg, report);
     std::vector<Sum> sums(3 * soup.faces.size());
     for (std::uint32_t f = 0; f < faces.size(); ++f) {
         for (std::uint32_t i = 0; i < 3; ++i) {

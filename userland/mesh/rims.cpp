@@ -2,9 +2,9 @@
 #include "mesh/rims.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 
+#include "mesh/groups.hpp"
 #include "mesh/vector.hpp"
 
 namespace phantom::mesh {
@@ -16,28 +16,6 @@ constexpr std::uint32_t leaf_size = 4;
 /// A set's corners are whole nm, and a distance is a sum with rounding of its own: a face that is farther
 /// than the reach by no more than that counts as near.
 constexpr double rounding_factor = 1 + 1e-9, rounding_mm = 1e-5;
-
-/// Which of them hang together.
-class Groups {
-  public:
-    explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-    /// The lowest number of its group.
-    std::uint32_t find(std::uint32_t at)
-    {
-        while (parent_[at] != at)
-            at = parent_[at] = parent_[parent_[at]];
-        return at;
-    }
-    void join(std::uint32_t a, std::uint32_t b)
-    {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// An edge of a face over which it has no neighbour; its ends by the number of their point.
 struct LooseEdge {
@@ -135,7 +113,7 @@ std::vector<std::uint32_t> number_surfaces(const Mesh& mesh, const std::vector<L
     });
     std::vector<std::uint32_t> surface(mesh.faces.size());
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
-        surface[f] = groups.find(f) + 1;
+        surface[f] = groups.first(f) + 1;
     return surface;
 }
 
@@ -147,7 +125,7 @@ std::uint64_t count_loops(const Mesh& mesh, const std::vector<LooseEdge>& rims)
     std::vector<std::uint32_t> loops;
     loops.reserve(rims.size());
     for (const LooseEdge& e : rims)
-        loops.push_back(groups.find(e.from_point));
+        loops.push_back(groups.first(e.from_point));
     std::sort(loops.begin(), loops.end());
     return static_cast<std::uint64_t>(std::unique(loops.begin(), loops.end()) - loops.begin());
 }
