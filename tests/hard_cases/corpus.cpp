@@ -48,6 +48,17 @@ const std::vector<Case>& corpus()
     return all;
 }
 
+Case make_case(Kind kind, std::string name, Triangles triangles, double radius, std::vector<Path> paths)
+{
+    Case c;
+    c.name = std::move(name);
+    c.kind = kind;
+    c.sets = {std::move(triangles)};
+    c.paths = std::move(paths);
+    c.radius = radius;
+    return c;
+}
+
 Triangles moved(Triangles triangles, const Vec3& by)
 {
     for (auto& t : triangles)

@@ -95,6 +95,8 @@ std::vector<Case> concave_cases();    ///< grooves, folds, narrow places
 std::vector<Case> motion_cases();     ///< far and small meshes, speed, sets exchanged, integer limits
 
 // What the parts share.
+/// One mesh, R of all its triangles; promised as the defaults above say.
+Case make_case(Kind kind, std::string name, Triangles triangles, double radius, std::vector<Path> paths);
 Triangles moved(Triangles triangles, const Vec3& by);
 /// Seen from the other side.
 Triangles flipped(Triangles triangles);

@@ -14,12 +14,7 @@ namespace {
 
 Case within(Kind kind, std::string name, Triangles triangles, double radius, std::vector<Path> paths)
 {
-    Case c;
-    c.name = std::move(name);
-    c.kind = kind;
-    c.sets = {std::move(triangles)};
-    c.paths = std::move(paths);
-    c.radius = radius;
+    Case c = make_case(kind, std::move(name), std::move(triangles), radius, std::move(paths));
     c.projected_step = folded_step;
     return c;
 }

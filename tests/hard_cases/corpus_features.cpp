@@ -73,13 +73,7 @@ std::vector<Case> on_features()
 
 Case over(std::string name, Triangles triangles, double radius, std::vector<Path> paths)
 {
-    Case c;
-    c.name = std::move(name);
-    c.kind = Kind::edges;
-    c.sets = {std::move(triangles)};
-    c.paths = std::move(paths);
-    c.radius = radius;
-    return c;
+    return make_case(Kind::edges, std::move(name), std::move(triangles), radius, std::move(paths));
 }
 
 /// z = -slope |x|

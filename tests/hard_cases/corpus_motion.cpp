@@ -15,17 +15,6 @@ namespace phantom::hard {
 
 namespace {
 
-Case made(Kind kind, std::string name, Triangles triangles, double radius, std::vector<Path> paths)
-{
-    Case c;
-    c.name = std::move(name);
-    c.kind = kind;
-    c.sets = {std::move(triangles)};
-    c.paths = std::move(paths);
-    c.radius = radius;
-    return c;
-}
-
 /// A ball of 2 mm with bumps of 0.1 mm.
 double finely_bumpy(const Vec3& d)
 {
@@ -77,7 +66,8 @@ Case resized(Case c, double factor)
 std::vector<Case> places()
 {
     const Triangles ball = star(2, finely_bumpy).triangles(1, 0.5);
-    Case plain = made(Kind::place, "ball of 2 mm with bumps of 0.1 mm", ball, 0.5, over_the_small_ball());
+    Case plain =
+        make_case(Kind::place, "ball of 2 mm with bumps of 0.1 mm", ball, 0.5, over_the_small_ball());
     plain.projected_step = folded_step;
     plain.near_mm = 0.2;
     plain.closed = plain.penetrates = true;
@@ -95,9 +85,9 @@ std::vector<Case> places()
     out.back().name = "the same 10 um across";
     out.back().rigid = false;  // its corners are 1,000 steps of the nm grid apart
     out.back().closed = false; // the places' distance from the surface is near the grid's
-    out.push_back(made(Kind::place, "plate of 2 m, R = 100 mm",
-                       field(4, 900, [](double, double) { return 0.0; }).triangles(1, 100), 100,
-                       {{{{-3, 1, 50}, {2, -1, 50}}}, {{{1, 1, 1}, {1, 1, -1}, {1.5, 1, 1}}}}));
+    out.push_back(make_case(Kind::place, "plate of 2 m, R = 100 mm",
+                            field(4, 900, [](double, double) { return 0.0; }).triangles(1, 100), 100,
+                            {{{{-3, 1, 50}, {2, -1, 50}}}, {{{1, 1, 1}, {1, 1, -1}, {1.5, 1, 1}}}}));
     out.back().near_mm = 90;
     out.back().penetrates = true;
     return out;
@@ -117,7 +107,7 @@ Path ticks(const Vec3& a, const Vec3& b, double step_mm, End end)
 /// Fast ones: 1 kHz, the slowest rate.
 Case fast(std::string name, Triangles triangles, std::vector<Path> paths)
 {
-    Case c = made(Kind::speed, std::move(name), std::move(triangles), 1, std::move(paths));
+    Case c = make_case(Kind::speed, std::move(name), std::move(triangles), 1, std::move(paths));
     c.projected_step = measured; // steps are as long as the ways
     c.penetrates = true;
     return c;
@@ -177,21 +167,21 @@ std::vector<Case> exchanges()
         down{{{1, 2, 10.5}, {0.5, 2, 8.5}, {-1, 2, 8.2}, {-0.5, 1, 11.5}}};
     const Triangles near = part_of(ball, along.places, 4), nearer = part_of(ball, down.places, 3);
     std::vector<Case> out;
-    out.push_back(made(Kind::exchange, "another subset every tick", ball, 1.5, {along}));
+    out.push_back(make_case(Kind::exchange, "another subset every tick", ball, 1.5, {along}));
     out.back().sets.insert(out.back().sets.end(), {near, part_of(near, along.places, 3)});
     out.back().near_mm = 1;
-    out.push_back(made(Kind::exchange, "another subset every tick, inside", ball, 1.5, {down}));
+    out.push_back(make_case(Kind::exchange, "another subset every tick, inside", ball, 1.5, {down}));
     out.back().sets.push_back(nearer);
     out.back().projected_step = measured; // as it is on leaving without an exchange
     out.back().closed = out.back().penetrates = true;
-    out.push_back(made(Kind::exchange, "an empty set every other tick", ball, 1.5, {along, down}));
+    out.push_back(make_case(Kind::exchange, "an empty set every other tick", ball, 1.5, {along, down}));
     out.back().sets.push_back({});
     out.back().projected_step = measured;
     out.back().penetrates = true;
     out.back().outcome = "no force from the empty set; the servo fades to it";
     Triangles few = nearer;
     few.resize(8);
-    out.push_back(made(Kind::exchange, "a set over budget every other tick", ball, 1.5, {along, down}));
+    out.push_back(make_case(Kind::exchange, "a set over budget every other tick", ball, 1.5, {along, down}));
     out.back().sets.push_back(few);
     out.back().projected_step = measured;
     out.back().penetrates = true;
@@ -203,21 +193,21 @@ std::vector<Case> limits()
 {
     std::vector<Case> out;
     Triangles stiff = field(1, 10, [](double, double) { return 0.0; }).triangles(4e6, 2);
-    out.push_back(
-        made(Kind::limits, "k = 4e6 N/mm", stiff, 2, {{{{1, 2, 2.1}, {1, 2, 1}, {0, 2, -1}, {0, 2, 1}}}}));
+    out.push_back(make_case(Kind::limits, "k = 4e6 N/mm", stiff, 2,
+                            {{{{1, 2, 2.1}, {1, 2, 1}, {0, 2, -1}, {0, 2, 1}}}}));
     out.back().stiffness = 4e6;
     out.back().projected_step = measured;
     out.back().penetrates = out.back().saturates = true;
     out.push_back(
-        made(Kind::limits, "corners at +-1 m, R = 1 m", box({1000, 1000, 1000}).triangles(1, 1000), 1000,
-             {{{{999, 10, 1140}, {1001, -5, 1100}}, 1}, {{{990, 990, 1010}, {1010, 1010, 990}}, 1}}));
+        make_case(Kind::limits, "corners at +-1 m, R = 1 m", box({1000, 1000, 1000}).triangles(1, 1000), 1000,
+                  {{{{999, 10, 1140}, {1001, -5, 1100}}, 1}, {{{990, 990, 1010}, {1010, 1010, 990}}, 1}}));
     out.back().projected_step = measured;
     out.back().rigid = false;
     constexpr double end =
         1147.483646; // farther away, a distance to -1 m has more than 32 bits: nothing is covered
     const Triangles far = joined(moved(sphere(1, 10).triangles(1, 2), {-990, -990, -990}),
                                  moved(sphere(1, 10).triangles(1, 2), {990, 990, 990}));
-    out.push_back(made(
+    out.push_back(make_case(
         Kind::limits, "distances of 32 bits", far, 2,
         {{{{end, end, end}, {end, -end, -end}, {-end, -end, -end}, {-end, -end, end}, {-end, end, end}}, 0},
          {{{end, end, end}, {979, 990, 990}, {978.6, 990, 990}, {-end, end, -end}}, 0}}));
