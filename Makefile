@@ -7,10 +7,10 @@ RELEASE := $(BUILD)/release
 JOBS    ?= $(shell nproc)
 CMAKE   := cmake -G Ninja -S userland
 
-.PHONY: help all demo test hard-cases fuzz vm-test vm-debug modules install bench lint clean
+.PHONY: help all demo test hard-cases penetration fuzz vm-test vm-debug modules install bench lint clean
 
 help: ## this list
-	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
+	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' Makefile
 
 all: ## build every program into build/bin
 	@tools/bootstrap build
@@ -38,12 +38,19 @@ fuzz: ## arbitrary sets and paths through the border, with libFuzzer for SECONDS
 	@FUZZ_SECONDS=$(or $(SECONDS),600) tools/fuzz
 
 hard-cases: ## a table: what every hard case of contact did with every model and arithmetic
+	@$(MAKE) --no-print-directory table TABLE=hard_cases_table
+
+penetration: ## a table: the force under bumpy spheres, in six minutes, against the nearest point
+	@$(MAKE) --no-print-directory table TABLE=penetration_bench
+
+.PHONY: table
+table:
 	@tools/bootstrap build
 	@mkdir -p $(BUILD)
 	@$(CMAKE) -B $(RELEASE) -DCMAKE_BUILD_TYPE=Release -DPHANTOM_TESTS=ON \
 	  -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$(CURDIR)/$(BUILD)/bin >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
-	@cmake --build $(RELEASE) -j $(JOBS) --target hard_cases_table
-	@$(BUILD)/bin/hard_cases_table
+	@cmake --build $(RELEASE) -j $(JOBS) --target $(TABLE)
+	@$(BUILD)/bin/$(TABLE)
 
 vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 	@tools/bootstrap vm
