@@ -116,6 +116,26 @@ inline Soup unwelded(const Soup& soup)
     return out;
 }
 
+/// What a mesh came to, to be prepared once more.
+inline Soup soup_of(const Mesh& mesh)
+{
+    Soup soup;
+    soup.vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
+    soup.faces.assign(mesh.faces.begin(), mesh.faces.end());
+    soup.normals.assign(mesh.normals.begin(), mesh.normals.end());
+    soup.face_normals.assign(mesh.face_normals.begin(), mesh.face_normals.end());
+    return soup;
+}
+
+/// Adds another part. Without normals.
+inline void append(Soup& soup, const Soup& part)
+{
+    const auto base = static_cast<std::uint32_t>(soup.vertices.size());
+    soup.vertices.insert(soup.vertices.end(), part.vertices.begin(), part.vertices.end());
+    for (const Triple& f : part.faces)
+        soup.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
+}
+
 inline void turn(Soup& soup, std::size_t face)
 {
     std::swap(soup.faces[face][1], soup.faces[face][2]);

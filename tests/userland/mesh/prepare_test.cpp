@@ -48,21 +48,12 @@ void expect_sound(const Prepared& out)
     }
 }
 
-Soup soup_of(const Mesh& mesh)
-{
-    return {mesh.vertices, mesh.faces, mesh.normals, mesh.face_normals};
-}
-
 /// All the defects at once: two unwelded solids, flipped and duplicated faces, slivers, a fin, a loose sheet.
 Soup messy()
 {
     Soup soup = unwelded(globe(40, 10, 7));
-    for (const Soup& part : {unwelded(cube(10, {100, 0, 0})), sheet(3, 2)}) {
-        const auto base = static_cast<std::uint32_t>(soup.vertices.size());
-        soup.vertices.insert(soup.vertices.end(), part.vertices.begin(), part.vertices.end());
-        for (const Triple& f : part.faces)
-            soup.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
-    }
+    for (const Soup& part : {unwelded(cube(10, {100, 0, 0})), sheet(3, 2)})
+        append(soup, part);
     turn(soup, 3);
     turn(soup, 50);
     soup.faces.push_back(soup.faces[7]);                                          // duplicate
