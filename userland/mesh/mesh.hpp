@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include "base/shared_array.hpp"
 
 namespace phantom::mesh {
 
@@ -22,13 +25,14 @@ struct Soup {
     std::vector<Triple> face_normals; ///< per face corner, indices into normals; empty with normals
 };
 
-/// A mesh ready to be touched. Unit normals per corner, so that a crease can keep two.
+/// A mesh ready to be touched. Unit normals per corner, so that a crease can keep two. A copy shares its
+/// arrays.
 struct Mesh {
-    std::vector<Vec3> vertices;       ///< mm
-    std::vector<Triple> faces;        ///< counter-clockwise seen from outside
-    std::vector<Vec3> normals;        ///< unit; with `--prepare none` zero where there is no direction
-    std::vector<Triple> face_normals; ///< per face corner, indices into normals
-    std::vector<Triple> neighbours;   ///< face over edge i (corner i to i+1), or no_neighbour
+    SharedArray<Vec3> vertices;       ///< mm
+    SharedArray<Triple> faces;        ///< counter-clockwise seen from outside
+    SharedArray<Vec3> normals;        ///< unit; with `--prepare none` zero where there is no direction
+    SharedArray<Triple> face_normals; ///< per face corner, indices into normals
+    SharedArray<Triple> neighbours;   ///< face over edge i (corner i to i+1), or no_neighbour
 };
 
 struct Bounds {
@@ -37,6 +41,6 @@ struct Bounds {
     [[nodiscard]] double extent() const;
     [[nodiscard]] double diagonal() const;
 };
-Bounds bounds_of(const std::vector<Vec3>& vertices);
+Bounds bounds_of(std::span<const Vec3> vertices);
 
 } // namespace phantom::mesh

@@ -127,13 +127,14 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     }
     Mesh mesh;
     const EdgeIndex edges(soup.faces, soup.vertices.size());
-    mesh.neighbours = neighbours_of(soup, edges, report);
+    std::vector<Triple> neighbours = neighbours_of(soup, edges, report);
     report.components = count_components(soup, edges);
     progress(0.8);
     if (options.full)
-        corner_normals(soup, mesh.neighbours, options.crease_deg, report);
+        corner_normals(soup, neighbours, options.crease_deg, report);
     else if (soup.face_normals.empty())
         vertex_normals(soup);
+    mesh.neighbours = std::move(neighbours);
     mesh.vertices = std::move(soup.vertices);
     mesh.faces = std::move(soup.faces);
     mesh.normals = std::move(soup.normals);

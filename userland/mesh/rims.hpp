@@ -28,12 +28,12 @@ struct RimNode {
 };
 
 struct Rims {
-    std::vector<Rim> edges;
+    SharedArray<Rim> edges;
     std::uint64_t loops = 0; ///< rims that hang together count as one
     /// Per face: the number of its surface, from 1 on, when a rim of it may come within the reach that they
     /// were made for; else 0. Empty when there is no rim.
-    std::vector<std::uint32_t> surface;
-    std::vector<RimNode> nodes; ///< over `edges`
+    SharedArray<std::uint32_t> surface;
+    SharedArray<RimNode> nodes; ///< over `edges`
 
     [[nodiscard]] std::uint32_t surface_of(std::uint32_t face) const
     {

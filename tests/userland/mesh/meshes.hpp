@@ -12,6 +12,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -141,7 +142,7 @@ inline void turn(Soup& soup, std::size_t face)
     std::swap(soup.faces[face][1], soup.faces[face][2]);
 }
 
-inline double signed_volume(const std::vector<Vec3>& vertices, const std::vector<Triple>& faces)
+inline double signed_volume(std::span<const Vec3> vertices, std::span<const Triple> faces)
 {
     double sum = 0;
     for (const Triple& f : faces)
@@ -149,7 +150,7 @@ inline double signed_volume(const std::vector<Vec3>& vertices, const std::vector
     return sum / 6;
 }
 
-inline double area(const std::vector<Vec3>& vertices, const std::vector<Triple>& faces)
+inline double area(std::span<const Vec3> vertices, std::span<const Triple> faces)
 {
     double sum = 0;
     for (const Triple& f : faces)
@@ -168,7 +169,7 @@ inline Vec3 normal_of(const Mesh& mesh, std::size_t face)
 
 /// Edges (low vertex, high vertex) with the faces on them, found the slow and plain way.
 inline std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>>
-edges_of(const std::vector<Triple>& faces)
+edges_of(std::span<const Triple> faces)
 {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
     for (std::uint32_t f = 0; f < faces.size(); ++f) {
