@@ -85,6 +85,16 @@ Error no_usable_face(const Report& report, const std::string& name)
 
 } // namespace
 
+std::string words_of(const PrepareOptions& options)
+{
+    // By structured binding: an option that is added and left out here does not compile.
+    const auto& [full, scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided, progress] = options;
+    static_cast<void>(progress);
+    // Doubles in hexadecimal, so that not a bit is lost.
+    return fmt::format("{} scale {:a} fit {:a} weld {:a} crease {:a} split {:a}{}", full ? "full" : "none",
+                       scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided ? " two-sided" : "");
+}
+
 Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::string& name)
 {
     if (const auto status = check_options(options); !status)

@@ -24,9 +24,12 @@ struct PrepareOptions {
     std::function<void(double)> progress{}; ///< 0 ... 1, may be empty
 };
 
+/// Every option that the result depends on, in words: two that differ give different words.
+std::string words_of(const PrepareOptions& options);
+
 /// What was found and what was done about it. Every input face is in faces or in exactly one dropped count:
 /// faces_read = faces - faces_split - faces_cut + faces_zero_area + faces_duplicate + faces_nonfinite.
-struct Report {
+struct Findings {
     std::uint64_t vertices_read = 0, faces_read = 0;
     std::uint64_t vertices_welded = 0;
     std::uint64_t faces_zero_area = 0; ///< dropped: two corners equal or collinear
@@ -58,6 +61,9 @@ struct Report {
     /// Places where the result is not what it should be, by the last step's checks (validate.cpp). Not 0 is a
     /// fault of this program.
     std::uint64_t faults = 0;
+};
+
+struct Report : Findings {
     std::vector<std::string> warnings; ///< one line each; names the option that helps, where there is one
 };
 

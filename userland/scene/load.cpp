@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "mesh/read.hpp"
+#include "scene/cache.hpp"
 #include "scene/ranges.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
@@ -69,25 +70,60 @@ Result<mesh::Soup> geometry_of(const ObjectEntry& object)
     return soup;
 }
 
-Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
-                           const LoadOptions& options)
+/// Reads and prepares.
+Status fill(const ObjectEntry& entry, const mesh::PrepareOptions& prepare, double reach_mm, Object& object)
 {
     auto soup = geometry_of(entry);
     if (!soup)
         return soup.error();
     const std::string name = entry.mesh.empty() ? entry.name : entry.mesh.string();
-    auto prepared = mesh::prepare(std::move(*soup), prepare_options(file, entry, options), name);
+    auto prepared = mesh::prepare(std::move(*soup), prepare, name);
     if (!prepared)
         return prepared.error();
+    object.mesh = std::move(prepared->mesh);
+    object.fans = mesh::make_fans(object.mesh);
+    object.rims = mesh::make_rims(object.mesh, reach_mm);
+    object.report = std::move(prepared->report);
+    return success();
+}
+
+/// As fill(), by way of the cache.
+Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
+                   const std::filesystem::path& directory, Object& object, std::vector<std::string>& notes)
+{
+    const Result<CacheTicket> ticket = ticket_for(request);
+    // A file that cannot be read gets read()'s own words.
+    if (!ticket)
+        return fill(entry, request.prepare, request.reach_mm, object);
+    const Result<bool> opened = open_cached(directory, *ticket, object);
+    if (opened && *opened) {
+        object.from_cache = true;
+        return success();
+    }
+    if (!opened)
+        notes.push_back(opened.error().text() + ": prepared again");
+    if (const Status status = fill(entry, request.prepare, request.reach_mm, object); !status)
+        return status;
+    object.build_hulls();
+    if (const Status status = keep(directory, *ticket, request, object); !status)
+        notes.push_back(status.error().text() + ": the next load will prepare it again");
+    return success();
+}
+
+Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
+                           const LoadOptions& options, std::vector<std::string>& notes)
+{
     Object object;
     object.name = entry.name;
     object.file = entry.mesh;
-    object.mesh = std::move(prepared->mesh);
-    object.fans = mesh::make_fans(object.mesh);
-    object.rims = mesh::make_rims(object.mesh, material.radius_mm);
-    object.report = std::move(prepared->report);
     object.pose = entry.pose;
     object.material = entry.material;
+    const CacheRequest request{entry.mesh, prepare_options(file, entry, options), material.radius_mm};
+    const Status status = options.cache && is_cacheable(entry.mesh)
+                              ? fill_cached(entry, request, *options.cache, object, notes)
+                              : fill(entry, request.prepare, request.reach_mm, object);
+    if (!status)
+        return status.error();
     return object;
 }
 
@@ -118,7 +154,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     }
     std::uint64_t first_face = 0, first_vertex = 0;
     for (const ObjectEntry& entry : entries->objects) {
-        auto object = make_object(*entries, entry, scene.materials[entry.material], options);
+        auto object = make_object(*entries, entry, scene.materials[entry.material], options, scene.notes);
         if (!object)
             return object.error();
         object->first_face = static_cast<std::uint32_t>(first_face);
