@@ -11,6 +11,7 @@
 
 #include "base/progress_bar.hpp"
 #include "feeder/control_socket.hpp"
+#include "scene/cache.hpp"
 
 namespace phantom::fdhctl {
 
@@ -88,6 +89,7 @@ void SceneOptions::add(CLI::App& app)
     app.add_option("--radius", radius_mm, "contact radius of every material [1, or the scene's]")
         ->check(positive())
         ->type_name("MM");
+    app.add_flag("!--no-cache", use_cache, "prepare the meshes anew (fdhctl cache shows what is kept)");
 }
 
 scene::LoadOptions SceneOptions::load_options() const
@@ -100,6 +102,8 @@ scene::LoadOptions SceneOptions::load_options() const
     options.unit = unit;
     options.stiffness_n_mm = stiffness_n_mm;
     options.radius_mm = radius_mm;
+    if (use_cache)
+        options.cache = scene::cache_directory();
     return options;
 }
 
@@ -124,6 +128,8 @@ std::vector<std::string> SceneOptions::arguments() const
         words.insert(words.end(), {"--prepare", prepare});
     if (split_mm > 0)
         add_number("--split", split_mm);
+    if (!use_cache)
+        words.emplace_back("--no-cache");
     return words;
 }
 
@@ -132,6 +138,8 @@ void print_warnings(const scene::Scene& scene)
     for (const scene::Object& object : scene.objects)
         for (const std::string& warning : object.report.warnings)
             std::fprintf(stderr, "fdhctl: warning: %s: %s\n", object.file.string().c_str(), warning.c_str());
+    for (const std::string& note : scene.notes)
+        std::fprintf(stderr, "fdhctl: %s\n", note.c_str());
 }
 
 Result<scene::Scene> load_scene(const SceneOptions& options)

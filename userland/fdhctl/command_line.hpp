@@ -27,6 +27,7 @@ struct Command {
 };
 
 Run add_bench(CLI::App& app);
+Run add_cache(CLI::App& app);
 Run add_devices(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_load(CLI::App& app);
@@ -55,9 +56,11 @@ struct SceneOptions {
     std::optional<double> stiffness_n_mm, radius_mm;
     double fit_mm = 0, crease_deg = 60, split_mm = 0;
     std::string prepare = "full";
+    bool use_cache = true;
 
     void add(CLI::App& app);
     /// The preparation alone: --unit, --fit, --crease, --prepare, --split.
+    /// Whoever calls only this prepares anew every time.
     void add_preparation(CLI::App& app);
     [[nodiscard]] scene::LoadOptions load_options() const;
     /// The same as command line words, for a program that takes over.
@@ -66,7 +69,7 @@ struct SceneOptions {
 
 /// Reads a scene with a progress bar, warnings of the preparation on stderr.
 Result<scene::Scene> load_scene(const SceneOptions& options);
-/// Warnings of every object's preparation on stderr.
+/// Warnings of every object's preparation and what went wrong beside it, on stderr.
 void print_warnings(const scene::Scene& scene);
 
 /// --model, --steps, --combine, --proxy, --arith.

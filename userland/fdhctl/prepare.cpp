@@ -43,6 +43,7 @@ int run(const Options& options)
 Run add_prepare(CLI::App& app)
 {
     auto options = std::make_shared<Options>();
+    options->scene.use_cache = false;
     app.add_option("mesh", options->scene.scene, "PLY, OBJ, STL or OFF")->required()->type_name("MESH");
     app.add_option("-o,--output", options->output, "binary PLY in mm with vertex normals")
         ->required()

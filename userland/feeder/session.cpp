@@ -109,16 +109,19 @@ struct Session::Impl {
         if (!loaded)
             return loaded.error();
         scene = std::move(*loaded);
-        timings.read_prepare_ms = milliseconds_since(opened);
+        timings.read_prepare_ms = milliseconds_since(opened) - scene.hulls_ms;
         const auto begin = Clock::now();
         tree.emplace(scene::build_tree<14>(scene));
-        timings.build_ms = milliseconds_since(begin);
+        timings.build_ms = milliseconds_since(begin) + scene.hulls_ms;
         const mesh::Bounds bounds = scene.bounds();
-        say(fmt::format("{}: {} triangles, {:.1f} x {:.1f} x {:.1f} mm, read and prepared in {:.0f} ms, "
+        const bool cached = std::all_of(scene.objects.begin(), scene.objects.end(),
+                                        [](const scene::Object& object) { return object.from_cache; });
+        say(fmt::format("{}: {} triangles, {:.1f} x {:.1f} x {:.1f} mm, {} in {:.0f} ms, "
                         "FDH14 hierarchy in {:.0f} ms",
                         options.scene.filename().string(), scene.triangles(), bounds.high[0] - bounds.low[0],
                         bounds.high[1] - bounds.low[1], bounds.high[2] - bounds.low[2],
-                        timings.read_prepare_ms, timings.build_ms));
+                        cached ? "from the cache" : "read and prepared", timings.read_prepare_ms,
+                        timings.build_ms));
         return check_reach(scene, options.feeder);
     }
 

@@ -375,6 +375,9 @@ Status check_reach(const scene::Scene& scene, const FeederOptions& options)
     // and proxy.
     const double edge_max_mm = reach_mm - 2.0 * options.search_radius_mm;
     for (const scene::Object& object : scene.objects) {
+        // A hundredth for the rounding of what the report says.
+        if (object.report.edge_max_mm > 0 && object.report.edge_max_mm < 0.99 * edge_max_mm)
+            continue;
         for (std::size_t face = 0; face < object.mesh.faces.size(); ++face) {
             const mesh::Triple& corners = object.mesh.faces[face];
             for (int edge = 0; edge < 3; ++edge) {

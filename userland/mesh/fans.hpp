@@ -22,6 +22,7 @@ struct Fan {
     Triple corners;              ///< vertices; over an edge two of them are equal, over a vertex all three
     std::array<Vec3, 3> normals; ///< unit, per corner
     [[nodiscard]] bool over_vertex() const { return corners[0] == corners[1] && corners[1] == corners[2]; }
+    bool operator==(const Fan&) const = default;
 };
 
 /// The fans of a mesh, each kept with one of the faces that it lies between: whoever is within some distance

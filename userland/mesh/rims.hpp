@@ -18,6 +18,7 @@ struct Rim {
     std::uint32_t from, to; ///< vertices, as the face runs
     std::uint32_t face;     ///< which ends there
     std::uint32_t surface;  ///< of that face; > 0
+    bool operator==(const Rim&) const = default;
 };
 
 /// A box round some of the rims. In preorder: what follows a node up to `skip` lies in it.
@@ -25,6 +26,7 @@ struct RimNode {
     Vec3 low, high;
     std::uint32_t skip;         ///< the next node that does not lie in this one
     std::uint32_t first, count; ///< rims of a leaf; count 0 elsewhere
+    bool operator==(const RimNode&) const = default;
 };
 
 struct Rims {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <chrono>
+
 #include <fmt/format.h>
 
 #include "mesh/read.hpp"
@@ -89,7 +91,7 @@ Status fill(const ObjectEntry& entry, const mesh::PrepareOptions& prepare, doubl
 
 /// As fill(), by way of the cache.
 Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
-                   const std::filesystem::path& directory, Object& object, std::vector<std::string>& notes)
+                   const std::filesystem::path& directory, Object& object, Scene& scene)
 {
     const Result<CacheTicket> ticket = ticket_for(request);
     // A file that cannot be read gets read()'s own words.
@@ -101,17 +103,20 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
         return success();
     }
     if (!opened)
-        notes.push_back(opened.error().text() + ": prepared again");
+        scene.notes.push_back(opened.error().text() + ": prepared again");
     if (const Status status = fill(entry, request.prepare, request.reach_mm, object); !status)
         return status;
+    const auto begin = std::chrono::steady_clock::now();
     object.build_hulls();
+    scene.hulls_ms +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     if (const Status status = keep(directory, *ticket, request, object); !status)
-        notes.push_back(status.error().text() + ": the next load will prepare it again");
+        scene.notes.push_back(status.error().text() + ": the next load will prepare it again");
     return success();
 }
 
 Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
-                           const LoadOptions& options, std::vector<std::string>& notes)
+                           const LoadOptions& options, Scene& scene)
 {
     Object object;
     object.name = entry.name;
@@ -120,7 +125,7 @@ Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, cons
     object.material = entry.material;
     const CacheRequest request{entry.mesh, prepare_options(file, entry, options), material.radius_mm};
     const Status status = options.cache && is_cacheable(entry.mesh)
-                              ? fill_cached(entry, request, *options.cache, object, notes)
+                              ? fill_cached(entry, request, *options.cache, object, scene)
                               : fill(entry, request.prepare, request.reach_mm, object);
     if (!status)
         return status.error();
@@ -154,7 +159,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     }
     std::uint64_t first_face = 0, first_vertex = 0;
     for (const ObjectEntry& entry : entries->objects) {
-        auto object = make_object(*entries, entry, scene.materials[entry.material], options, scene.notes);
+        auto object = make_object(*entries, entry, scene.materials[entry.material], options, scene);
         if (!object)
             return object.error();
         object->first_face = static_cast<std::uint32_t>(first_face);

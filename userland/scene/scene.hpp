@@ -67,6 +67,7 @@ struct Scene {
     std::vector<Material> materials; ///< at least one
     DeviceSettings device;
     ServoSettings servo;
+    double hulls_ms = 0;            ///< what building hulls took of loading, for the cache
     std::vector<std::string> notes; ///< what went wrong beside the loading itself, one line each
 
     [[nodiscard]] std::uint64_t triangles() const;

@@ -92,6 +92,11 @@ std::string_view characters(std::span<const T> elements)
     return {reinterpret_cast<const char*>(elements.data()), elements.size_bytes()};
 }
 
+bool zero(std::span<const std::byte> bytes)
+{
+    return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
 /// The table, if header and table are whole.
 Result<std::span<const Entry>> table_of(std::span<const std::byte> bytes, const std::string& name)
 {
@@ -174,12 +179,16 @@ Result<SectionReader> SectionReader::open(const std::filesystem::path& file,
         return Error{name, "is of another mesh or of other options"};
     const Error changed{name, "has changed since it was written"};
     std::vector<std::span<const std::byte>> contents;
+    std::uint64_t end = sizeof(Header) + table->size_bytes();
     for (const Entry& entry : *table) {
-        if (entry.offset % alignment != 0 || entry.offset > bytes.size() ||
-            entry.bytes > bytes.size() - entry.offset)
+        if (entry.offset != aligned(end) || entry.offset > bytes.size() ||
+            entry.bytes > bytes.size() - entry.offset || !zero(bytes.subspan(end, entry.offset - end)))
             return changed;
         contents.push_back(bytes.subspan(entry.offset, entry.bytes));
+        end = entry.offset + entry.bytes;
     }
+    if (bytes.size() != aligned(end) || !zero(bytes.subspan(end)))
+        return changed;
     const std::vector<std::uint64_t> sums =
         check == Check::content ? checksums(contents) : std::vector<std::uint64_t>();
     for (std::size_t i = 0; i < sums.size(); ++i)

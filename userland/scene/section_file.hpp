@@ -3,7 +3,7 @@
 //
 //   Header        64 bytes: what it is, key, size of the file, checksum of header and table
 //   Section[n]    id, where, how many bytes, checksum
-//   bytes         of each section, at a multiple of 64
+//   bytes         of each section, at a multiple of 64, zeros between
 //
 // In this machine's byte order: the file is a cache and never travels. Checksums are XXH3 (Collet), 64 bits.
 #pragma once
