@@ -13,6 +13,8 @@ namespace {
 /// push.
 constexpr double collinear = 1e-12;
 
+} // namespace
+
 bool has_no_area(const Soup& soup, const Triple& face)
 {
     if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
@@ -23,8 +25,6 @@ bool has_no_area(const Soup& soup, const Triple& face)
     const double longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
     return !(length(cross(a, b)) > collinear * longest);
 }
-
-} // namespace
 
 Vec3 face_normal(const Soup& soup, const Triple& face)
 {
