@@ -13,50 +13,40 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// An object of some level.
-struct Detail {
-    Object object;
-    fdh::TriangleTree<14> tree;
-    double error_mm = 0;
-};
-
 /// One object alone, covered by its own triangles only.
-Coverage coverage_alone(const Scene& scene, const Object& object, const fdh::TriangleTree<14>& tree,
-                        std::uint32_t budget)
+Coverage coverage_alone(const Scene& scene, const Object& object, std::uint32_t budget)
 {
     Scene alone;
     alone.materials = scene.materials;
     alone.objects.push_back(object);
-    fdh::SceneTree<14> trees;
-    trees.add(tree, object.pose);
-    trees.update();
-    return measure_coverage(alone, trees, budget);
+    return measure_coverage(alone, build_tree<14>(alone), budget);
 }
 
 /// The object's chain, finest first, without the object itself.
-std::vector<Detail> chain_of(const Scene& scene, const Object& object, const fdh::TriangleTree<14>& tree,
-                             const LevelOptions& options)
+std::vector<Surface> chain_of(const Scene& scene, const Object& object, const fdh::TriangleTree<14>& tree,
+                              const LevelOptions& options)
 {
-    std::vector<Detail> out;
+    std::vector<Surface> out;
     const double radius_mm = scene.materials[object.material].radius_mm;
     const double needed_mm = reach_needed_mm(radius_mm, options.speed_mm_s, options.delay_s);
-    const auto enough = [&](const Object& at, const fdh::TriangleTree<14>& hulls) {
-        return at.mesh.faces.size() <= options.budget ||
-               coverage_alone(scene, at, hulls, options.budget).p1_mm >= needed_mm;
+    const auto enough = [&](const Surface& surface) {
+        Object at = object;
+        static_cast<Surface&>(at) = surface;
+        return surface.mesh.faces.size() <= options.budget ||
+               coverage_alone(scene, at, options.budget).p1_mm >= needed_mm;
     };
-    if (enough(object, tree))
+    Surface finest = object;
+    finest.tree = tree;
+    if (enough(finest))
         return out;
     mesh::ChainOptions chain;
     chain.edge_max_mm = options.edge_max_mm;
     chain.threads = options.threads;
     chain.cancelled = options.cancelled;
     chain.enough = [&](const mesh::ChainLevel& level) {
-        Object coarse = object;
-        coarse.mesh = level.mesh;
-        coarse.fans = mesh::make_fans(coarse.mesh);
-        coarse.rims = mesh::make_rims(coarse.mesh, radius_mm);
-        out.push_back({std::move(coarse), level.tree, level.error_mm});
-        return enough(out.back().object, level.tree);
+        out.push_back({level.mesh, mesh::make_fans(level.mesh), mesh::make_rims(level.mesh, radius_mm),
+                       level.error_mm, level.tree});
+        return enough(out.back());
     };
     mesh::simplify_chain(object.mesh, tree, chain);
     return out;
@@ -64,28 +54,26 @@ std::vector<Detail> chain_of(const Scene& scene, const Object& object, const fdh
 
 /// Every object at that place of its chain, or at its last.
 Level level_of(const Scene& scene, const fdh::SceneTree<14>& tree,
-               const std::vector<std::vector<Detail>>& chains, std::size_t number)
+               const std::vector<std::vector<Surface>>& chains, std::size_t number)
 {
     Level level;
     level.scene = scene;
     std::uint32_t first_face = 0, first_vertex = 0;
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         Object& object = level.scene.objects[i];
-        const std::vector<Detail>& chain = chains[i];
+        const std::vector<Surface>& chain = chains[i];
         if (chain.empty()) {
-            level.tree.add(tree.tree(i), object.pose);
+            object.tree = tree.tree(i);
         } else {
-            const Detail& detail = chain[std::min(number, chain.size()) - 1];
-            object = detail.object;
-            level.tree.add(detail.tree, object.pose);
-            level.error_mm = std::max(level.error_mm, detail.error_mm);
+            static_cast<Surface&>(object) = chain[std::min(number, chain.size()) - 1];
+            level.error_mm = std::max(level.error_mm, object.error_mm);
         }
         object.first_face = first_face;
         object.first_vertex = first_vertex;
         first_face += static_cast<std::uint32_t>(object.mesh.faces.size());
         first_vertex += static_cast<std::uint32_t>(object.mesh.vertices.size());
     }
-    level.tree.update();
+    level.tree = build_tree<14>(level.scene);
     return level;
 }
 
@@ -106,7 +94,7 @@ Levels build_levels(const Scene& scene, const fdh::SceneTree<14>& tree, const Le
     const auto begin = Clock::now();
     Levels levels;
     levels.finest = measure_coverage(scene, tree, options.budget);
-    std::vector<std::vector<Detail>> chains(scene.objects.size());
+    std::vector<std::vector<Surface>> chains(scene.objects.size());
     std::size_t longest = 0;
     // What the whole covers is no more than what its objects do.
     if (levels.finest.p1_mm < reach_needed_mm(scene.max_radius_mm(), options.speed_mm_s, options.delay_s)) {
