@@ -190,6 +190,11 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     finish_report(mesh, options.two_sided, report);
     if (options.two_sided && !make_two_sided(mesh))
         return Error{name, "has too many faces to have two sides", "leave out two_sided"};
+    if (options.full && (report.faults = count_faults(mesh)) > 0)
+        report.warnings.push_back(
+            fmt::format("{} faces of the result are not as they should be, a fault of this "
+                        "program: please report it with the mesh",
+                        report.faults));
     progress(1);
     return Prepared{std::move(mesh), std::move(report)};
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "mesh/edge_index.hpp"
 #include "mesh/mesh.hpp"
@@ -75,10 +76,19 @@ std::uint64_t remove_faces(Soup& soup, Drop&& drop)
 void vertex_normals(Soup& soup);
 
 /// Two corners equal, or collinear as drop_degenerate() means it.
-bool has_no_area(const Soup& soup, const Triple& face);
+bool has_no_area(std::span<const Vec3> vertices, const Triple& face);
 
 /// Unit normal by the corners' order; zero for a face without area.
-Vec3 face_normal(const Soup& soup, const Triple& face);
+Vec3 face_normal(std::span<const Vec3> vertices, const Triple& face);
+inline Vec3 face_normal(const Soup& soup, const Triple& face)
+{
+    return face_normal(soup.vertices, face);
+}
+
+/// Faces of a finished mesh that break what every later part relies on: corners that exist and are finite, an
+/// area, unit normals within 90 degrees of the face, neighbours that have one another over the same edge, the
+/// other way round.
+std::uint64_t count_faults(const Mesh& mesh);
 
 /// Shortest, median and longest edge.
 void measure_edges(const Soup& soup, const EdgeIndex& edges, Report& report);

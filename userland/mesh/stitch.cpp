@@ -87,6 +87,7 @@ bool sew_cracks(Soup& soup, const std::vector<HalfEdge>& boundary, double tolera
     const BoxTree tree(points);
     std::vector<std::uint32_t> to(vertices.size());
     bool changed = false;
+    double moved = 0;
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {
         const Vec3& point = points[i].low;
         to[i] = i;
@@ -100,8 +101,9 @@ bool sew_cracks(Soup& soup, const std::vector<HalfEdge>& boundary, double tolera
             continue;
         changed = true;
         ++report.vertices_sewn;
-        report.moved_max_mm = std::max(report.moved_max_mm, distance(points[to[i]].low, point));
+        moved = std::max(moved, distance(points[to[i]].low, point));
     }
+    report.moved_max_mm += moved;
     for (Triple& face : soup.faces) {
         if (!changed)
             break;

@@ -171,6 +171,8 @@ class Cutter {
     }
 
     [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+    /// How far the surface was moved at most.
+    [[nodiscard]] double moved_mm() const { return moved_mm_; }
     [[nodiscard]] bool with_normals() const { return with_normals_; }
 
   private:
@@ -194,9 +196,11 @@ class Cutter {
         const Vec3 before = face_normal(soup_, old.corners);
         for (const Piece& p : fan) {
             if (p.corners[j] == old.corners[k] || p.corners[i] == old.corners[k] ||
-                has_no_area(soup_, p.corners) || !(dot(face_normal(soup_, p.corners), before) > 0))
+                has_no_area(soup_.vertices, p.corners) || !(dot(face_normal(soup_, p.corners), before) > 0))
                 return 0;
         }
+        for (const Hit& hit : hits)
+            moved_mm_ = std::max(moved_mm_, hit.away);
         *piece = fan.front();
         pieces_.insert(piece + 1, fan.begin() + 1, fan.end());
         return hits.size();
@@ -219,6 +223,7 @@ class Cutter {
     Soup& soup_;
     bool with_normals_;
     std::vector<Piece> pieces_;
+    double moved_mm_ = 0;
 };
 
 } // namespace
@@ -243,8 +248,7 @@ bool cut_t_junctions(Soup& soup, const std::vector<HalfEdge>& boundary, double t
                 face_normals.push_back(piece.normals);
         }
     }
-    for (const Hit& hit : hits)
-        report.moved_max_mm = std::max(report.moved_max_mm, hit.away);
+    report.moved_max_mm += cutter.moved_mm();
     report.t_junctions += taken;
     report.faces_cut += faces.size() - soup.faces.size();
     soup.faces = std::move(faces);
