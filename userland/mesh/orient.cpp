@@ -112,28 +112,28 @@ std::uint64_t turn_outward(Soup& soup, const EdgeIndex& edges, const Components&
 
 } // namespace
 
-std::uint64_t count_components(const Soup& soup, const EdgeIndex& edges)
+void orient(Soup& soup, std::unique_ptr<EdgeIndex>& edges, Report& report)
 {
-    return components_of(soup.faces, edges).count();
-}
-
-void orient(Soup& soup, Report& report)
-{
+    const auto index_again = [&] {
+        edges.reset(); // before the next: each is as large as the soup
+        edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
+    };
     // Turning faces can make two of them equal, and dropping one can give an edge its two faces: until
     // nothing changes. Each further round has fewer faces, so it ends.
     for (bool first = true;; first = false) {
-        auto edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
         const std::uint64_t dropped = drop_duplicates(soup, *edges);
         report.faces_duplicate += dropped;
         if (dropped == 0 && !first)
             return;
         if (dropped > 0)
-            edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
+            index_again();
         const Components components = components_of(soup.faces, *edges);
         const std::uint64_t flipped = turn_to_agree(soup, components);
         if (flipped > 0)
-            edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
+            index_again();
         const std::uint64_t turned = turn_outward(soup, *edges, components, report);
+        if (turned > 0)
+            index_again();
         report.faces_flipped += flipped;
         report.components_turned += turned;
         if (flipped == 0 && turned == 0)

@@ -54,7 +54,7 @@ struct Findings {
     std::uint64_t normals_repaired = 0;    ///< corner normals that cancelled to zero or did not fit
     std::uint64_t faces_split = 0;         ///< faces added by bisection
     std::uint64_t vertices = 0, faces = 0; ///< of the result
-    double moved_max_mm = 0; ///< no vertex was moved farther, and no face, by welding, sewing and cutting
+    double moved_max_mm = 0; ///< no part of the surface was moved farther by welding, sewing and cutting
     double edge_min_mm = 0, edge_median_mm = 0, edge_max_mm = 0;
     bool watertight = false; ///< every face has a neighbour over each of its edges
     double size_mm[3] = {0, 0, 0};

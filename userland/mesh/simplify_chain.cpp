@@ -37,15 +37,28 @@ double longest_edge_mm(const Mesh& mesh)
     return longest;
 }
 
+/// Whether it is as make_two_sided() leaves it: the second half of the faces are backs of the first.
+bool has_backs(const Mesh& mesh)
+{
+    const std::size_t fronts = mesh.faces.size() / 2;
+    for (std::size_t f = 0; f < fronts; ++f) {
+        const Triple &front = mesh.faces[f], &back = mesh.faces[fronts + f];
+        if (back != Triple{front[0], front[2], front[1]})
+            return false;
+    }
+    return mesh.faces.size() % 2 == 0;
+}
+
 class Chain {
   public:
     Chain(const Mesh& mesh, const fdh::TriangleTree<14>& tree, const ChainOptions& options)
         : mesh_(mesh),
           tree_(tree),
           options_(options),
-          collapse_(wedges_of(mesh, options.two_sided ? mesh.faces.size() / 2 : mesh.faces.size(),
-                              options.crease_deg),
-                    options.threads),
+          has_backs_(has_backs(mesh)),
+          collapse_(
+              wedges_of(mesh, has_backs_ ? mesh.faces.size() / 2 : mesh.faces.size(), options.crease_deg),
+              options.threads),
           error_max_mm_(error_max * bounds_of(mesh.vertices).extent())
     {
     }
@@ -56,7 +69,7 @@ class Chain {
         if (cancelled() || !collapse() || cancelled())
             return std::nullopt;
         Mesh mesh = mesh_of(collapse_.wedges());
-        if (longest_edge_mm(mesh) > options_.edge_max_mm || (options_.two_sided && !make_two_sided(mesh)))
+        if (longest_edge_mm(mesh) > options_.edge_max_mm || (has_backs_ && !make_two_sided(mesh)))
             return std::nullopt;
         auto tree = fdh::TriangleTree<14>::build({mesh.vertices, mesh.faces}, {.threads = options_.threads});
         if (cancelled())
@@ -96,6 +109,7 @@ class Chain {
     const Mesh& mesh_;
     const fdh::TriangleTree<14>& tree_;
     const ChainOptions& options_;
+    bool has_backs_;
     EdgeCollapse collapse_;
     double error_max_mm_;
     double quadric_mm_ = 0; ///< of the last level

@@ -21,7 +21,6 @@ struct ChainLevel {
 };
 
 struct ChainOptions {
-    bool two_sided = false; ///< the mesh has backs (two_sided.hpp), and so shall its levels
     double crease_deg = 20; ///< where the normals of an edge's two faces differ more, the edge is a crease
     double edge_max_mm = std::numeric_limits<double>::infinity(); ///< the chain ends before a longer edge
     unsigned levels_max = 16;
@@ -35,7 +34,8 @@ struct ChainOptions {
 /// that costs no more error, every next one with twice the error of the one before, at least a quarter fewer
 /// triangles and at most four times fewer. Vertices are vertices of the mesh, bit for bit; borders and
 /// creases are kept within the error, a crease being where the mesh's normals say so. Normals are made anew.
-/// A watertight mesh has watertight levels. Empty where nothing can be left out.
+/// A watertight mesh has watertight levels, and one with backs (two_sided.hpp) levels with backs. Empty where
+/// nothing can be left out.
 std::vector<ChainLevel> simplify_chain(const Mesh& mesh, const fdh::TriangleTree<14>& tree,
                                        const ChainOptions& options);
 

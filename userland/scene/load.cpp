@@ -8,7 +8,7 @@
 #include "scene/ranges.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
-#include "scene/shapes.hpp"
+#include "scene/shapes/shape.hpp"
 #include "scene/units.hpp"
 
 namespace phantom::scene {
@@ -53,7 +53,7 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
     mesh::PrepareOptions prepare = options.prepare;
     const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or("mm")));
     // A shape's sizes are in mm already.
-    prepare.scale *= object.shape == Shape::none ? millimetres_in(unit).value_or(1.0) : 1.0;
+    prepare.scale *= object.shape ? 1.0 : millimetres_in(unit).value_or(1.0);
     prepare.two_sided = object.two_sided;
     if (prepare.fit_mm <= 0 && object.fit_mm)
         prepare.fit_mm = *object.fit_mm;
@@ -62,10 +62,15 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
 
 Result<mesh::Soup> geometry_of(const ObjectEntry& object)
 {
-    if (object.shape == Shape::sphere)
-        return sphere_soup(object.sphere_radius_mm);
-    if (object.shape == Shape::box)
-        return box_soup(object.box_size_mm);
+    if (object.shape) {
+        auto soup = triangulate(*object.shape, object.chord_mm);
+        if (soup)
+            return soup;
+        const auto& [key, what, remedy] = soup.error();
+        const auto place = object.shape_where.find(key);
+        return Error{place == object.shape_where.end() ? object.where : place->second,
+                     fmt::format("{}: {}: {}", object.name, key, what), remedy};
+    }
     auto soup = mesh::read(object.mesh);
     if (!soup && !object.mesh_where.empty() && !std::filesystem::exists(object.mesh))
         return Error{object.mesh_where, "mesh: no such file: " + object.mesh.string()};

@@ -120,10 +120,10 @@ TEST(LevelChoice, ReachOfAFlatGridIsTheDiscOfItsBudget)
     scene.objects.emplace_back();
     scene.objects[0].mesh = grid;
     const fdh::SceneTree<14> tree = scene::build_tree<14>(scene);
-    const double reach = feeder::measure_reach_mm(grid, tree.tree(0), 64);
+    const double reach = scene::measure_coverage(scene, tree, 64).p1_mm;
     EXPECT_LT(reach, std::sqrt(0.5 * 64 / M_PI)); // the disc of their area
     EXPECT_GT(reach, 0.6 * std::sqrt(0.5 * 64 / M_PI));
-    EXPECT_GT(feeder::measure_reach_mm(grid, tree.tree(0), 256), 1.8 * reach);
+    EXPECT_GT(scene::measure_coverage(scene, tree, 256).p1_mm, 1.8 * reach);
 }
 
 } // namespace
