@@ -381,7 +381,7 @@ Status check_reach(const scene::Scene& scene, const FeederOptions& options)
     const double longest_mm = edge_max_mm(options);
     for (const scene::Object& object : scene.objects) {
         // A hundredth for the rounding of what the report says.
-        if (object.report.edge_max_mm > 0 && object.report.edge_max_mm < 0.99 * edge_max_mm)
+        if (object.report.edge_max_mm > 0 && object.report.edge_max_mm < 0.99 * longest_mm)
             continue;
         for (std::size_t face = 0; face < object.mesh.faces.size(); ++face) {
             const mesh::Triple& corners = object.mesh.faces[face];
