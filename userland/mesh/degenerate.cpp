@@ -33,13 +33,18 @@ Vec3 face_normal(std::span<const Vec3> vertices, const Triple& face)
     return normalized(cross(a, b));
 }
 
-void drop_degenerate(Soup& soup, Report& report)
+void drop_nonfinite(Soup& soup, Report& report)
 {
     report.faces_nonfinite += remove_faces(soup, [&](std::size_t f) {
         const Triple& face = soup.faces[f];
         return !is_finite(soup.vertices[face[0]]) || !is_finite(soup.vertices[face[1]]) ||
                !is_finite(soup.vertices[face[2]]);
     });
+}
+
+void drop_degenerate(Soup& soup, Report& report)
+{
+    drop_nonfinite(soup, report);
     report.faces_zero_area +=
         remove_faces(soup, [&](std::size_t f) { return has_no_area(soup.vertices, soup.faces[f]); });
 }

@@ -44,7 +44,8 @@ bool indices_in_range(const Soup& soup)
         });
     };
     return within(soup.faces, soup.vertices.size()) && within(soup.face_normals, soup.normals.size()) &&
-           (soup.face_normals.empty() || soup.face_normals.size() == soup.faces.size());
+           (soup.face_normals.empty() || soup.face_normals.size() == soup.faces.size()) &&
+           (soup.smoothing.empty() || soup.smoothing.size() == soup.faces.size());
 }
 
 /// Bounds of what the faces use: a stray vertex far away does not count.
@@ -132,12 +133,15 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     Report report;
     report.vertices_read = soup.vertices.size();
     report.faces_read = soup.faces.size();
+    report.polygons_crossed = soup.polygons_crossed;
     progress(0);
     for (Vec3& vertex : soup.vertices)
         vertex = scaled(vertex, options.scale);
     // Before the fit: what will be dropped must not count for the size.
     if (options.full)
         drop_degenerate(soup, report);
+    else
+        drop_nonfinite(soup, report);
     if (soup.faces.empty())
         return no_usable_face(report, name);
     if (options.fit_mm > 0) {

@@ -28,9 +28,11 @@ struct PrepareOptions {
 std::string words_of(const PrepareOptions& options);
 
 /// What was found and what was done about it. Every input face is in faces or in exactly one dropped count:
-/// faces_read = faces - faces_split - faces_cut + faces_zero_area + faces_duplicate + faces_nonfinite.
+/// faces_read (polygons cut into triangles) = faces - faces_split - faces_cut + faces_zero_area +
+/// faces_duplicate + faces_nonfinite.
 struct Findings {
     std::uint64_t vertices_read = 0, faces_read = 0;
+    std::uint64_t polygons_crossed = 0; ///< cross themselves: their triangles overlap
     std::uint64_t vertices_welded = 0;
     std::uint64_t faces_zero_area = 0; ///< dropped: two corners equal or collinear
     std::uint64_t faces_duplicate = 0; ///< dropped: same three vertices, same sense

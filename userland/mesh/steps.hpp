@@ -21,7 +21,10 @@ void weld(Soup& soup, double weld_mm, Report& report);
 /// Removes vertices that no face uses; those kept stay in order.
 void drop_unused_vertices(Soup& soup);
 
-/// Drops faces with a corner that is not finite, and faces without area: two corners equal, or the height
+/// Drops faces with a corner that is no finite point: no step can do anything with them.
+void drop_nonfinite(Soup& soup, Report& report);
+
+/// Drops those, and faces without area: two corners equal, or the height
 /// over the longest side below 1e-12 of it (rounding of the coordinates themselves).
 void drop_degenerate(Soup& soup, Report& report);
 
@@ -47,15 +50,16 @@ void separate_fans(Soup& soup, const std::vector<Triple>& neighbours, Report& re
 /// Parts that hang together over neighbours.
 std::uint64_t count_components(const std::vector<Triple>& neighbours);
 
-/// Angle-weighted normals per corner, faces round a vertex grouped up to creases; a normal of the
-/// file stays where it fits its face.
+/// Angle-weighted normals per corner, faces round a vertex grouped up to creases: edges between faces more
+/// than crease_deg apart, but those within a smoothing group, and those between two. A normal of the file
+/// stays where it fits its face.
 void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double crease_deg, Report& report);
 
 /// Removes the faces for which drop(number of the face) holds; the rest stays in order. Returns how many.
 template <typename Drop>
 std::uint64_t remove_faces(Soup& soup, Drop&& drop)
 {
-    const bool with_normals = !soup.face_normals.empty();
+    const bool with_normals = !soup.face_normals.empty(), with_groups = !soup.smoothing.empty();
     std::size_t kept = 0;
     for (std::size_t f = 0; f < soup.faces.size(); ++f) {
         if (drop(f))
@@ -63,12 +67,16 @@ std::uint64_t remove_faces(Soup& soup, Drop&& drop)
         soup.faces[kept] = soup.faces[f];
         if (with_normals)
             soup.face_normals[kept] = soup.face_normals[f];
+        if (with_groups)
+            soup.smoothing[kept] = soup.smoothing[f];
         ++kept;
     }
     const std::uint64_t dropped = soup.faces.size() - kept;
     soup.faces.resize(kept);
     if (with_normals)
         soup.face_normals.resize(kept);
+    if (with_groups)
+        soup.smoothing.resize(kept);
     return dropped;
 }
 

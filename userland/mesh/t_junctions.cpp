@@ -235,6 +235,7 @@ bool cut_t_junctions(Soup& soup, const std::vector<HalfEdge>& boundary, double t
         return false;
     Cutter cutter(soup);
     std::vector<Triple> faces, face_normals;
+    std::vector<std::uint32_t> smoothing;
     faces.reserve(soup.faces.size() + hits.size());
     std::size_t taken = 0, at = 0;
     for (std::uint32_t f = 0; f < soup.faces.size(); ++f) {
@@ -246,6 +247,8 @@ bool cut_t_junctions(Soup& soup, const std::vector<HalfEdge>& boundary, double t
             faces.push_back(piece.corners);
             if (cutter.with_normals())
                 face_normals.push_back(piece.normals);
+            if (!soup.smoothing.empty())
+                smoothing.push_back(soup.smoothing[f]);
         }
     }
     report.moved_max_mm += cutter.moved_mm();
@@ -253,6 +256,7 @@ bool cut_t_junctions(Soup& soup, const std::vector<HalfEdge>& boundary, double t
     report.faces_cut += faces.size() - soup.faces.size();
     soup.faces = std::move(faces);
     soup.face_normals = std::move(face_normals);
+    soup.smoothing = std::move(smoothing);
     return taken > 0;
 }
 
