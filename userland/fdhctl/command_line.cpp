@@ -60,7 +60,8 @@ int fail(const Error& error)
 
 void SceneOptions::add_preparation(CLI::App& app)
 {
-    app.add_option("--unit", unit, "unit of the file's coordinates: mm, cm, m, in, um [mm, or the scene's]")
+    app.add_option("--unit", unit,
+                   "unit of the file's coordinates: mm, cm, m, in, um [the scene's; else mm, glTF m]")
         ->check(CLI::IsMember({"mm", "cm", "m", "in", "um"}))
         ->type_name("UNIT");
     app.add_option("--fit", fit_mm, "scale the longest side to this and centre at the origin")
@@ -79,7 +80,7 @@ void SceneOptions::add_preparation(CLI::App& app)
 
 void SceneOptions::add(CLI::App& app)
 {
-    app.add_option("scene", scene, "a mesh (PLY, OBJ, STL, OFF) or a scene file (TOML)")
+    app.add_option("scene", scene, "a mesh (PLY, OBJ, STL, OFF, VTP, VTK, 3DS, glTF) or a scene file (TOML)")
         ->required()
         ->type_name("SCENE");
     add_preparation(app);
@@ -200,6 +201,26 @@ void BudgetOptions::apply(feeder::FeederOptions& options) const
     options.grow_budget = !fixed;
     if (!options.all)
         options.budget = static_cast<std::uint32_t>(std::stoul(budget));
+}
+
+void LevelsOption::add(CLI::App& app, const char* otherwise)
+{
+    const auto check = [](std::string& text) {
+        return scene::level_wish(text) ? std::string()
+                                       : fmt::format("expected auto, off or a number, found '{}'", text);
+    };
+    app.add_option("--levels", word,
+                   fmt::format("of detail, simplified, for a fast tip; auto: where the mesh is too fine for "
+                               "the budget, which takes about as long and as much memory as preparing it; N: "
+                               "that one alone [{}]",
+                               otherwise))
+        ->check(CLI::Validator(check, ""))
+        ->type_name("auto|off|N");
+}
+
+std::optional<scene::LevelWish> LevelsOption::wish() const
+{
+    return scene::level_wish(word);
 }
 
 CLI::Option* add_device_option(CLI::App& app, std::string& node)

@@ -10,6 +10,7 @@
 
 #include "base/result.hpp"
 #include "feeder/feeder.hpp"
+#include "scene/levels.hpp"
 #include "scene/scene.hpp"
 
 namespace phantom::fdhctl {
@@ -87,6 +88,14 @@ struct BudgetOptions {
 
     void add(CLI::App& app, bool allow_all);
     void apply(feeder::FeederOptions& options) const;
+};
+
+/// --levels auto|off|N.
+struct LevelsOption {
+    std::string word; ///< empty: not given
+
+    void add(CLI::App& app, const char* otherwise);
+    [[nodiscard]] std::optional<scene::LevelWish> wish() const;
 };
 
 /// --device: NODE of the kernel's device, empty for the first there is.

@@ -26,7 +26,7 @@ constexpr double error_factor = 2.0;
 constexpr double error_max = 0.05;
 
 /// Samples of a surface's distance from another.
-constexpr std::size_t samples = 1'000'000;
+constexpr std::size_t samples = 400'000;
 
 double longest_edge_mm(const Mesh& mesh)
 {

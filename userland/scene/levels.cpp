@@ -2,6 +2,7 @@
 #include "scene/levels.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <utility>
 
@@ -78,6 +79,22 @@ Level level_of(const Scene& scene, const fdh::SceneTree<14>& tree,
 }
 
 } // namespace
+
+std::optional<LevelWish> level_wish(const std::string& word)
+{
+    std::optional<LevelWish> wish;
+    std::uint32_t number = 0;
+    const char* last = word.data() + word.size();
+    const auto [end, error] = std::from_chars(word.data(), last, number);
+    const bool is_number = !word.empty() && error == std::errc() && end == last;
+    if (word != "auto" && word != "off" && !is_number)
+        return wish;
+    wish.emplace();
+    wish->on = word != "off";
+    if (is_number)
+        wish->fixed.emplace(number);
+    return wish;
+}
 
 const Coverage& Levels::coverage(std::size_t level) const
 {

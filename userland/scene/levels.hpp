@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "fdh/scene_tree.hpp"
@@ -32,6 +34,15 @@ struct Levels {
     [[nodiscard]] const Coverage& coverage(std::size_t level) const;
     [[nodiscard]] double error_mm(std::size_t level) const;
 };
+
+/// Whether there shall be levels: "auto" where an object needs them, "off" never, a number: that level alone
+/// (or the coarsest).
+struct LevelWish {
+    bool on = true;
+    std::optional<std::uint32_t> fixed{};
+};
+/// Nothing when it is none of these.
+std::optional<LevelWish> level_wish(const std::string& word);
 
 struct LevelOptions {
     std::uint32_t budget = 64; ///< triangles of a set

@@ -157,6 +157,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     scene.file = file;
     scene.device = entries->device;
     scene.servo = entries->servo;
+    scene.levels = entries->levels;
     scene.materials = entries->materials;
     for (Material& material : scene.materials) {
         material.stiffness_n_mm = options.stiffness_n_mm.value_or(material.stiffness_n_mm);

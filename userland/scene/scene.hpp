@@ -68,6 +68,7 @@ struct Scene {
     DeviceSettings device;
     ServoSettings servo;
     double hulls_ms = 0;            ///< what building hulls took of loading, for the cache
+    std::optional<bool> levels;     ///< of detail (levels.hpp): whether there shall be any
     std::vector<std::string> notes; ///< what went wrong beside the loading itself, one line each
 
     [[nodiscard]] std::uint64_t triangles() const;

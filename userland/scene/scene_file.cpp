@@ -24,6 +24,7 @@ constexpr std::array<std::string_view, 3> model_words = {"paper", "projected", "
 constexpr std::array<std::string_view, 2> combine_words = {"paper", "bounded"};
 constexpr std::array<std::string_view, 3> proxy_words = {"paper", "constrained", "off"};
 constexpr std::array<std::string_view, 3> arith_words = {"float", "fixed", "double"};
+constexpr std::array<std::string_view, 2> level_words = {"auto", "off"};
 constexpr int newton_steps_max = 3; ///< PHANTOM_NEWTON_STEPS_MAX
 
 /// Rotation by an angle about a unit axis (Rodrigues), row-major.
@@ -280,8 +281,10 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& file)
         return table.error();
     Faults faults(file.string());
     SceneFile out;
-    TomlReader root(*table, "", {"unit", "object", "material", "device", "servo"}, faults);
+    TomlReader root(*table, "", {"unit", "levels", "object", "material", "device", "servo"}, faults);
     out.unit = root.word("unit", unit_words);
+    if (const auto word = root.word("levels", level_words))
+        out.levels = *word == "auto";
     read_materials(root, faults, out);
     read_objects(root, *table, file, faults, out);
     if (const toml::table* device = root.table("device"))

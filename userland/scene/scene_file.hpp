@@ -35,6 +35,7 @@ struct SceneFile {
     std::vector<Material> materials; ///< at least one
     DeviceSettings device;
     ServoSettings servo;
+    std::optional<bool> levels; ///< nothing: as the program likes
 };
 
 /// Errors: "file:line: key: what was expected".

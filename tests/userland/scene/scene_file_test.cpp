@@ -54,7 +54,7 @@ TEST(SceneFile, SoundFileLoads)
 TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
 {
     EXPECT_EQ(error_of("units = \"mm\"\n[[object]]\nmesh = \"part.obj\"\n"),
-              "a.toml:1: units: unknown key, expected unit, object, material, device, servo");
+              "a.toml:1: units: unknown key, expected unit, levels, object, material, device, servo");
     EXPECT_EQ(
         in_object("colour = \"red\"\n"),
         "a.toml:3: object 1: colour: unknown key, expected name, mesh, shape, unit, fit_mm, two_sided, pose, "
