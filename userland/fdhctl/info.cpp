@@ -52,6 +52,7 @@ scene::Levels levels_of(const scene::Scene& scene, const fdh::SceneTree<14>& tre
     wanted.budget = budget;
     wanted.delay_s = std::max(scene::slow_feed_s, 1.0 / options.feed_rate_hz);
     wanted.edge_max_mm = feeder::edge_max_mm({});
+    wanted.cache = options.scene.load_options().cache;
     return scene::build_levels(scene, tree, wanted);
 }
 

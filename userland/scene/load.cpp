@@ -105,6 +105,7 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
     const Result<bool> opened = open_cached(directory, *ticket, object);
     if (opened && *opened) {
         object.from_cache = true;
+        object.cache_key = ticket->key;
         return success();
     }
     if (!opened)
@@ -115,8 +116,11 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
     object.build_hulls();
     scene.hulls_ms +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    if (const Status status = keep(directory, *ticket, request, object); !status)
-        scene.notes.push_back(status.error().text() + ": the next load will prepare it again");
+    const Result<bool> kept = keep(directory, *ticket, request, object);
+    if (!kept)
+        scene.notes.push_back(kept.error().text() + ": the next load will prepare it again");
+    else if (*kept)
+        object.cache_key = ticket->key;
     return success();
 }
 
