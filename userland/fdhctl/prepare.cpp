@@ -39,11 +39,11 @@ int run(const Options& options)
     if (const auto warning = coverage_warning(coverage, pace))
         std::fprintf(stderr, "fdhctl: warning: %s: %s\n", options.scene.scene.c_str(), warning->c_str());
     if (options.json) {
-        nlohmann::json report = report_json(object.report);
+        nlohmann::json report = report_json(object);
         report["coverage"] = coverage_json(coverage, pace);
         std::printf("%s\n", report.dump().c_str());
     } else {
-        std::printf("%scoverage    %s\nwritten to  %s\n", report_text(object.report).c_str(),
+        std::printf("%scoverage    %s\nwritten to  %s\n", report_text(object).c_str(),
                     coverage_text(coverage, pace).c_str(), options.output.c_str());
     }
     return exit_success;

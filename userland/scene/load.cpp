@@ -57,6 +57,8 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
     prepare.two_sided = object.two_sided;
     if (prepare.fit_mm <= 0 && object.fit_mm)
         prepare.fit_mm = *object.fit_mm;
+    if (prepare.weld_mm <= 0 && object.weld_mm)
+        prepare.weld_mm = *object.weld_mm;
     return prepare;
 }
 
