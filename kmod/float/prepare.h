@@ -282,8 +282,33 @@ static inline void prepare_lean(struct block *block, u32 lane, const struct patc
 		row_set(block->lean_paper, lane, WIDE(LEAN_MOST));
 }
 
-static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p)
+/*
+ * Where no term of c, c' and c'' on [0, H], and no product of two of them, is larger than TAME_MOST, with
+ * the tip in reach: |q| <= R + 2 extent. 1 mm and a doubled m0 are for rounding and for the grid of normals.
+ */
+#define TAME_MOST WIDE(1 << 24)
+#define TAME_SLOPE_MOST WIDE(1 << 12)
+
+static inline bool patch_tame(const struct patch_geometry *p, wide height, wide extent)
 {
+	wide away = wide_add(wide_add(p->radius, wide_mul(WIDE(2), extent)), WIDE(1));
+	wide area1 = wide3_length(p->area1), area2 = wide3_length(p->area2);
+	wide c1 = wide_add(wide_mul(away, area1), WIDE(2));
+	wide c2 = wide_add(wide_mul(away, area2), wide_mul(WIDE(2), area1));
+	wide c3 = wide_mul(WIDE(2), area2);
+	wide curve = wide_add(c2, wide_mul(WIDE(3), wide_mul(c3, height)));
+	wide slope = wide_add(c1, wide_mul(wide_add(c2, curve), height));
+	wide value = wide_add(away, wide_mul(slope, height));
+
+	return wide_less(slope, TAME_SLOPE_MOST) && wide_less(curve, TAME_MOST) &&
+	       wide_less(wide_mul(value, wide_add(slope, curve)), TAME_MOST);
+}
+
+static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p,
+				 wide extent)
+{
+	wide height = wide_div(p->radius, normal_length_min(p));
+
 	row3_set(&block->face_normal, lane, p->lead);
 	row_set(block->area, lane, p->size);
 	row_set(block->order, lane, wide_from_integer(p->order));
@@ -292,7 +317,8 @@ static inline void prepare_shell(struct block *block, u32 lane, const struct pat
 	row_set(block->normal_area0, lane, wide3_dot(p->normal[0], p->lead));
 	row_set(block->normal_area1, lane, wide3_dot(p->normal[0], p->area1));
 	row_set(block->normal_area2, lane, wide3_dot(p->normal[0], p->area2));
-	row_set(block->height_limit, lane, wide_div(p->radius, normal_length_min(p)));
+	row_set(block->height_limit, lane, height);
+	block_set_tame(block, lane, patch_tame(p, height, extent));
 }
 
 static inline void prepare_patch(struct phantom_float_set *set, struct block *block, u32 lane,
@@ -324,7 +350,7 @@ static inline void prepare_patch(struct phantom_float_set *set, struct block *bl
 	block->stiffness[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->stiffness;
 	prepare_edges(block, lane, p);
 	prepare_lean(block, lane, p);
-	prepare_shell(block, lane, p);
+	prepare_shell(block, lane, p, extent);
 }
 
 /* A lane that can never be in contact. */
@@ -351,7 +377,7 @@ static inline void prepare_idle(struct block *block, u32 lane)
 	prepare_edges(block, lane, &p);
 	row_set(block->lean, lane, WIDE(0));
 	row_set(block->lean_paper, lane, WIDE(0));
-	prepare_shell(block, lane, &p);
+	prepare_shell(block, lane, &p, WIDE(0));
 }
 
 static inline u32 blocks_for(u32 patch_count)
@@ -400,6 +426,7 @@ static inline void prepare_header(const struct phantom_float_prepare *prepare)
 
 		material->stiffness = real_scaled(in->stiffness_mn_mm, WIDE(1e-3));
 		material->radius = real_scaled(in->radius_nm, WIDE(1e-6));
+		material->most = real_limit_force(mul(material->stiffness, material->radius));
 		/* mN s/m = 1e-6 N per mm/s */
 		material->damping = damped ? real_scaled(in->damping_mns_m, WIDE(1e-6)) : 0;
 		set->radius = real_max(set->radius, material->radius);

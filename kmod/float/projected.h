@@ -46,8 +46,9 @@
 #include "paper.h"
 #include "combine.h"
 #include "window.h"
+#include "barycentric.h"
 
-#define MONOTONE_PART REAL(0.25)
+#define MONOTONE_PARTS 4
 
 /* Inner radius of the window, in units of rounding_mm(). */
 #define SOFT_WALL 8
@@ -92,14 +93,15 @@ struct shell_point {
 	lanes beyond; /* 1 - b0 */
 };
 
+/* Of a cubic whose terms fit: see cubic_tame(). */
 LANES_INLINE lanes cubic_at(const struct cubic *c, lanes h)
 {
-	return mul(mul(mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
+	return mul_fitting(mul_fitting(mul_fitting(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
 }
 
 LANES_INLINE lanes cubic_slope(const struct cubic *c, lanes h)
 {
-	return mul(mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
+	return mul_fitting(mul_fitting(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
 }
 
 static inline real real_cubic_at(const struct real_cubic *c, real h)
@@ -195,47 +197,81 @@ LANES_INLINE struct cubic shell_cubic(const struct block *block, u32 step, struc
 	return c;
 }
 
+/*
+ * The cubic of a patch of which no term on [0, H] is too large for a product, wherever the tip is in reach.
+ * Of others 0, which is not monotone: their roots are found as those are that need care.
+ */
+LANES_INLINE struct cubic cubic_tame(const struct block *block, u32 step, const struct cubic *c)
+{
+#ifdef PHANTOM_REAL_FIXED
+	mask_lanes tame = block->tame[step];
+
+	return (struct cubic){lanes_keep(tame, c->c0), lanes_keep(tame, c->c1),
+			      lanes_keep(tame, c->c2), lanes_keep(tame, c->c3)};
+#else
+	(void)block;
+	(void)step;
+	return *c;
+#endif
+}
+
+/*
+ * Has the cubic different signs at the ends of [low, high]? `slopes` is the sum of the Bernstein coefficients of
+ * c' on [0, high], whose mean is that of c'; low is so near to 0 that the cubic is straight there.
+ */
+LANES_INLINE mask_lanes cubic_crosses(const struct cubic *c, lanes low, lanes high, lanes slopes)
+{
+#ifdef PHANTOM_REAL_FIXED
+	return (c->c0 + mul_fitting(c->c1, low) < 0) ^ (3 * c->c0 + mul_fitting(slopes, high) < 0);
+#else
+	(void)slopes;
+	return (cubic_at(c, low) < lanes_all(0)) ^ (cubic_at(c, high) < lanes_all(0));
+#endif
+}
+
 /* What Halley's method takes off h in the lanes of the mask: c c' / (c'^2 - c c''/2). */
 LANES_INLINE lanes cubic_correction(const struct cubic *c, lanes h, mask_lanes usual)
 {
 	lanes value = cubic_at(c, h);
 	lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(REAL(1)));
-	lanes square = mul(slope, slope);
-	lanes under = square - mul(value, mul(3 * c->c3, h) + c->c2);
+	lanes square = mul_fitting(slope, slope);
+	lanes under = square - mul_fitting(value, mul_fitting(3 * c->c3, h) + c->c2);
 	/* bent too much for it: Newton's */
-	mask_lanes near = under > mul(square, lanes_all(REAL(0.25)));
+	mask_lanes near = under > lanes_part(square, 4);
 
-	return divide(mul(value, lanes_select(near, slope, lanes_all(REAL(1)))),
+	return divide(mul_fitting(value, lanes_select(near, slope, lanes_all(REAL(1)))),
 		      lanes_select(near, under, slope));
 }
 
 /* Roots in [-rounding, H] of the candidate lanes. Returns the number of rounds in `roots`. */
-static inline u32 find_roots(const struct block *block, u32 step, const struct cubic *c,
-			     mask_lanes candidates, real rounding, u32 newton_steps,
-			     struct step_roots *roots)
+LANES_INLINE u32 find_roots(const struct block *block, u32 step, const struct cubic *any,
+			    mask_lanes candidates, real rounding, u32 newton_steps,
+			    struct step_roots *roots)
 {
 	const lanes low = lanes_all(-rounding), zero = lanes_all(0);
 	lanes high = block->height_limit[step];
+	struct cubic c = cubic_tame(block, step, any);
 	/* Bernstein coefficients of c' on [0, H] */
-	lanes first = c->c1, middle = c->c1 + mul(c->c2, high), last = cubic_slope(c, high);
+	lanes first = c.c1, middle = c.c1 + mul_fitting(c.c2, high), last = cubic_slope(&c, high);
 	lanes least = lanes_min(lanes_min(first, middle), last);
 	lanes most = lanes_max(lanes_max(first, middle), last);
-	mask_lanes falling = (most < zero) & (mul(least, lanes_all(MONOTONE_PART)) >= most);
-	mask_lanes rising = (least > zero) & (mul(most, lanes_all(MONOTONE_PART)) <= least);
+	mask_lanes falling = (most < zero) & (lanes_part(least, MONOTONE_PARTS) >= most);
+	mask_lanes rising = (least > zero) & (lanes_part(most, MONOTONE_PARTS) <= least);
 	mask_lanes usual = candidates & (falling | rising);
 	u32 split, l, i, rounds = 1;
 	lanes h;
 
 	roots->split = candidates & ~usual;
-	split = mask_bits(roots->split);
-	h = lanes_min(
-		lanes_max(divide(-c->c0, lanes_select(usual, c->c1, lanes_all(REAL(1)))), low),
-		high);
-	for (i = 0; i < newton_steps; i++)
-		h = lanes_min(lanes_max(h - cubic_correction(c, h, usual), low), high);
-	roots->h[0] = h;
+	roots->valid[0] = usual & cubic_crosses(&c, low, high, first + middle + last);
 	roots->sign[0] = lanes_select(falling, lanes_all(REAL(1)), lanes_all(REAL(-1)));
-	roots->valid[0] = usual & ((cubic_at(c, low) < zero) ^ (cubic_at(c, high) < zero));
+	split = mask_bits(roots->split);
+	if (!split && !mask_bits(roots->valid[0]))
+		return 0;
+	h = lanes_min(lanes_max(divide(-c.c0, lanes_select(usual, c.c1, lanes_all(REAL(1)))), low),
+		      high);
+	for (i = 0; i < newton_steps; i++)
+		h = lanes_min(lanes_max(h - cubic_correction(&c, h, usual), low), high);
+	roots->h[0] = h;
 	if (!split)
 		return rounds;
 	for (i = 1; i < PROJECTED_ROOTS; i++) {
@@ -244,7 +280,7 @@ static inline u32 find_roots(const struct block *block, u32 step, const struct c
 		roots->valid[i] = (mask_lanes){};
 	}
 	for (l = 0; l < PHANTOM_LANES; l++) {
-		struct real_cubic one = {c->c0[l], c->c1[l], c->c2[l], c->c3[l]};
+		struct real_cubic one = {any->c0[l], any->c1[l], any->c2[l], any->c3[l]};
 
 		if (split >> l & 1)
 			split_roots(&one, -rounding, high[l], l, roots);
@@ -261,77 +297,64 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const st
 {
 	const lanes one = lanes_all(REAL(1));
 	const real soft = SOFT_WALL * rounding;
-	struct lanes3 m0 = row3_step(&block->edge[0].normal, step);
-	struct lanes3 f1 = row3_step(&block->edge[0].normal_along, step);
-	struct lanes3 f2 = row3_step(&block->edge[2].normal_along, step); /* m0 - m2 = -f2 */
-	/* the offset edges E1, -E2, and w = P - X0 */
-	struct lanes3 e1 = lanes3_add(row3_step(&block->edge[0].along, step), lanes3_scale(f1, h));
-	struct lanes3 e2 = lanes3_add(row3_step(&block->edge[2].along, step), lanes3_scale(f2, h));
-	struct lanes3 w = lanes3_sub(from_corner(block, step, 0, tip), lanes3_scale(m0, h));
-	/* E2 - E1 and P - X1: b0 = 1 - b1 - b2 would be nothing but rounding at the end of a long edge */
-	struct lanes3 e0 =
-		lanes3_add(row3_step(&block->edge[1].along, step),
-			   lanes3_scale(row3_step(&block->edge[1].normal_along, step), h));
-	struct lanes3 w0 = lanes3_sub(from_corner(block, step, 1, tip),
-				      lanes3_scale(row3_step(&block->edge[1].normal, step), h));
 	/* A(h) / |A0| */
 	struct lanes3 area =
 		lanes3_add(row3_step(&block->face_normal, step),
 			   lanes3_scale(lanes3_add(row3_step(&block->area1, step),
 						   lanes3_scale(row3_step(&block->area2, step), h)),
 					h));
-	lanes size = mul(block->area[step], lanes3_dot(area, area));
-	lanes inverse, b0, b1, b2, turned, reach, length, radius = block->radius[step];
+	lanes turned, reach, length, least, radius = block->radius[step];
 	lanes power = one; /* h^order */
+	lanes b[3];
 	struct lanes3 n;
 	mask_lanes near_wall;
 
 	if (fan) {
 		power = lanes_select(block->order[step] > REAL(1), mul(h, h), h);
 		valid &= h > 0;
-		size = mul(size, power);
 	}
-	valid &= size > 0;
-	inverse = divide(one, lanes_select(valid, size, one));
-	b1 = mul(lanes3_dot(lanes3_cross(e2, w), area), inverse);
-	b2 = mul(lanes3_dot(lanes3_cross(e1, w), area), inverse);
-	b0 = mul(lanes3_dot(lanes3_cross(e0, w0), area), inverse);
-	n = lanes3_sub(lanes3_add(m0, lanes3_scale(f1, b1)), lanes3_scale(f2, b2));
-	turned = mul(mul(lanes_abs(lanes3_dot(area, n)), block->area[step]), power);
+	valid = barycentric_solve(block, step, tip, h, area, fan ? &power : NULL, valid, b);
+	/* m0 + b1 (m1 - m0) - b2 (m0 - m2) */
+	n = lanes3_add(row3_step(&block->edge[0].normal, step),
+		       lanes3_scale(row3_step(&block->edge[0].normal_along, step), b[1]));
+	n = lanes3_sub(n, lanes3_scale(row3_step(&block->edge[2].normal_along, step), b[2]));
+	turned = mul(lanes_abs(lanes3_dot(area, n)), block->area[step]);
+	if (fan)
+		turned = mul(turned, power);
 	/* |N x E_i| is at most the length of an offset edge */
 	reach = mul(lanes_all(2 * soft), block->extent[step] + h + soft);
-	valid &= (mul(b0, turned) >= -reach) & (mul(b1, turned) >= -reach) &
-		 (mul(b2, turned) >= -reach);
+	least = mul(lanes_min(lanes_min(b[0], b[1]), b[2]), turned);
+	valid &= least >= -reach;
 	out->accepted = valid;
 	if (!mask_bits(valid))
 		return;
 	if (mask_bits(split)) {
-		struct lanes3 away =
-			lanes3_add(w, lanes3_sub(lanes3_scale(e2, b2), lanes3_scale(e1, b1)));
+		struct lanes3 away = barycentric_away(block, step, tip, h, b);
 
 		valid &= ~split |
 			 (lanes3_dot(away, away) <=
 			  mul(mul(lanes_all(mul(FOUND_AGAIN, FOUND_AGAIN)), radius), radius));
 	}
 	length = lanes3_length(n);
-	valid &= (length > 0) & (mul(h, length) < radius) & (mul(h, length) > -rounding);
+	out->height = mul(h, length);
+	valid &= (length > 0) & (out->height < radius) & (out->height > -rounding);
 	out->accepted = valid;
 	if (!mask_bits(valid))
 		return;
-	out->height = mul(h, length);
-	out->normal = lanes3_over(n, lanes_select(valid, length, one));
+	out->normal = lanes3_unit_of_length(n, lanes_select(valid, length, one));
 	out->magnitude = lanes_limit_force(mul(block->stiffness[step], radius - out->height));
-	near_wall = valid & ((mul(b0, turned) <= reach) | (mul(b1, turned) <= reach) |
-			     (mul(b2, turned) <= reach));
+	near_wall = valid & (least <= reach);
 	out->near_wall = near_wall;
 	if (!mask_bits(near_wall))
 		return;
-	turned = lanes_max(turned, mul(mul(mul(lanes3_length(area), block->area[step]), power),
-				       lanes_all(IN_PLANE)));
-	out->part[0] = divide(mul(b0, turned), length);
-	out->part[1] = divide(mul(b1, turned), length);
-	out->part[2] = divide(mul(b2, turned), length);
-	out->beyond = one - b0;
+	reach = mul(lanes3_length(area), block->area[step]);
+	if (fan)
+		reach = mul(reach, power);
+	turned = lanes_max(turned, mul(reach, lanes_all(IN_PLANE)));
+	out->part[0] = divide(mul(b[0], turned), length);
+	out->part[1] = divide(mul(b[1], turned), length);
+	out->part[2] = divide(mul(b[2], turned), length);
+	out->beyond = one - b[0];
 }
 
 /* The part of the window that a root next to a wall has. */
@@ -374,11 +397,11 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 {
 	const real soft = SOFT_WALL * rounding;
 	struct lanes3 q = from_corner(block, step, 0, tip);
-	lanes height = lanes3_dot(row3_step(&block->face_normal, step), q);
+	lanes height = lanes3_dot_fitting(row3_step(&block->face_normal, step), q);
 	/* a first guess alone, without a Newton step, may take a tip beside the shell for one in it */
-	lanes lean = newton_steps ? block->lean[step] : lanes_all(REAL(LEAN_MOST));
 	mask_lanes candidates = (lanes_abs(height) < block->radius[step]) &
-				within_shell(block, step, q, height, lean, lanes_all(4 * soft));
+				within_shell(block, step, q, height, block->lean[step],
+					     newton_steps > 0, lanes_all(4 * soft));
 	struct shell_point point[PROJECTED_ROOTS];
 	struct step_roots roots;
 	struct cubic c;
