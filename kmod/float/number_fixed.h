@@ -20,6 +20,7 @@
 #define FIXED_LIMIT (1LL << 61)
 
 typedef s64 real;
+typedef s64 fine;
 typedef s64 mask_element;
 typedef s64 coordinate;
 
@@ -223,6 +224,11 @@ static inline u64 fixed_root(u64 a)
 LANES_INLINE real real_sqrt(real a)
 {
 	return a > 0 ? (real)(fixed_root((u64)a) >> (32 - FIXED_BITS / 2)) : 0;
+}
+
+LANES_INLINE fine fine_sqrt(fine a)
+{
+	return real_sqrt(a);
 }
 
 LANES_INLINE lanes lanes_sqrt(lanes a)

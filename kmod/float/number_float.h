@@ -14,6 +14,7 @@ typedef double real;
 typedef s64 mask_element;
 typedef double coordinate; /* a nm integer, exact in float64 */
 #else
+#define PHANTOM_REAL_SINGLE
 typedef float real;
 typedef s32 mask_element;
 typedef s32 coordinate;
@@ -24,6 +25,9 @@ typedef mask_element mask_lanes __attribute__((vector_size(PHANTOM_LANES * sizeo
 typedef coordinate nm_lanes __attribute__((vector_size(PHANTOM_LANES * sizeof(coordinate))));
 
 typedef double double_pair __attribute__((vector_size(16)));
+
+/* A real of which one at a time is worked on, where float32 would not do. */
+typedef double fine;
 
 /* A constant. */
 #define REAL(x) ((real)(x))
@@ -288,6 +292,11 @@ LANES_INLINE wide wide_div(wide a, wide b)
 LANES_INLINE wide wide_sqrt(wide a)
 {
 	return __builtin_ia32_sqrtpd((double_pair){a, a})[0];
+}
+
+LANES_INLINE fine fine_sqrt(fine a)
+{
+	return wide_sqrt(a);
 }
 
 LANES_INLINE bool wide_less(wide a, wide b)

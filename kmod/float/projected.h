@@ -45,36 +45,10 @@
 
 #include "paper.h"
 #include "combine.h"
-#include "window.h"
 #include "barycentric.h"
-
-#define MONOTONE_PARTS 4
-
-/* Inner radius of the window, in units of rounding_mm(). */
-#define SOFT_WALL 8
-
-/*
- * The distance from a wall counts for at least that part of the distance within the offset triangle:
- * at a fold A.N = 0, and without it a root would lie on every wall there, however far from it in b.
- */
-#define IN_PLANE REAL(1.0 / 32)
-
-/*
- * A(h) = 0 solves the cubic as well, with b that mean nothing. It happens only where the interval is
- * split; there P must be found again from its b and h, up to that part of R.
- */
-#define FOUND_AGAIN REAL(1e-3)
-
-/* Bisection alone needs that many steps for float32's 24 bits; float64 ends as near as Newton gets. */
-#define BRACKET_STEPS 32
-
-struct cubic {
-	lanes c0, c1, c2, c3;
-};
-
-struct real_cubic {
-	real c0, c1, c2, c3;
-};
+#include "cubic.h"
+#include "folded.h"
+#include "window.h"
 
 /* Roots of the patches of a step: h and sign by [root][lane]; a patch has `count` of them. */
 struct step_roots {
@@ -93,160 +67,10 @@ struct shell_point {
 	lanes beyond; /* 1 - b0 */
 };
 
-/* Of a cubic whose terms fit: see cubic_tame(). */
-LANES_INLINE lanes cubic_at(const struct cubic *c, lanes h)
-{
-	return mul_fitting(mul_fitting(mul_fitting(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
-}
-
-LANES_INLINE lanes cubic_slope(const struct cubic *c, lanes h)
-{
-	return mul_fitting(mul_fitting(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
-}
-
-static inline real real_cubic_at(const struct real_cubic *c, real h)
-{
-	return mul(mul(mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
-}
-
-/* The root in [low, high]; the cubic is negative at one end only and monotone between. */
-static inline real bracket_solve(const struct real_cubic *c, real low, real high, bool falling)
-{
-	real h = (low + high) / 2;
-	u32 i;
-
-	for (i = 0; i < BRACKET_STEPS; i++) {
-		real value = real_cubic_at(c, h);
-		real slope = mul(mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
-		real next;
-
-		if ((value < 0) == falling)
-			high = h;
-		else
-			low = h;
-		next = h - divide(value, slope);
-		/* written so that a step which is no number is refused as well */
-		if (!(next > low && next < high))
-			next = (low + high) / 2;
-		if (next == h)
-			break;
-		h = next;
-	}
-	return h;
-}
-
-/* Critical points of the cubic inside (low, high), ascending; returns how many. */
-static inline u32 critical_points(const struct real_cubic *c, real low, real high, real out[2])
-{
-	real discriminant = mul_sub(c->c2, c->c2, 3 * c->c1, c->c3);
-	real both, first, second;
-	u32 count = 0;
-
-	if (!(discriminant > 0))
-		return 0;
-	/* the stable form: no difference of nearly equal numbers */
-	both = c->c2 < 0 ? -c->c2 + real_sqrt(discriminant) : -c->c2 - real_sqrt(discriminant);
-	first = divide(both, 3 * c->c3);
-	second = divide(c->c1, both);
-	if (second < first) {
-		real swap = first;
-
-		first = second;
-		second = swap;
-	}
-	if (first > low && first < high)
-		out[count++] = first;
-	if (second > low && second < high)
-		out[count++] = second;
-	return count;
-}
-
-/* All roots of one lane in [low, high], by splitting at the critical points. */
-LANES_NOINLINE void split_roots(const struct real_cubic *c, real low, real high, u32 lane,
-				struct step_roots *roots)
-{
-	real ends[4], points[2];
-	u32 parts = 0, count = critical_points(c, low, high, points), found = 0, i;
-
-	ends[parts++] = low;
-	for (i = 0; i < count; i++)
-		ends[parts++] = points[i];
-	ends[parts] = high;
-	for (i = 0; i < parts; i++) {
-		bool negative = real_cubic_at(c, ends[i]) < 0;
-
-		if (negative == (real_cubic_at(c, ends[i + 1]) < 0))
-			continue;
-		roots->h[found][lane] = bracket_solve(c, ends[i], ends[i + 1], !negative);
-		roots->sign[found][lane] = negative ? REAL(-1) : REAL(1);
-		roots->valid[found][lane] = -1;
-		found++;
-	}
-}
-
-/* The cubics of a step. */
-LANES_INLINE struct cubic shell_cubic(const struct block *block, u32 step, struct lanes3 q,
-				      lanes height)
-{
-	struct cubic c;
-
-	c.c0 = height;
-	c.c1 = lanes3_dot(q, row3_step(&block->area1, step)) - block->normal_area0[step];
-	c.c2 = lanes3_dot(q, row3_step(&block->area2, step)) - block->normal_area1[step];
-	c.c3 = -block->normal_area2[step];
-	return c;
-}
-
-/*
- * The cubic of a patch of which no term on [0, H] is too large for a product, wherever the tip is in reach.
- * Of others 0, which is not monotone: their roots are found as those are that need care.
- */
-LANES_INLINE struct cubic cubic_tame(const struct block *block, u32 step, const struct cubic *c)
-{
-#ifdef PHANTOM_REAL_FIXED
-	mask_lanes tame = block->tame[step];
-
-	return (struct cubic){lanes_keep(tame, c->c0), lanes_keep(tame, c->c1),
-			      lanes_keep(tame, c->c2), lanes_keep(tame, c->c3)};
-#else
-	(void)block;
-	(void)step;
-	return *c;
-#endif
-}
-
-/*
- * Has the cubic different signs at the ends of [low, high]? `slopes` is the sum of the Bernstein coefficients of
- * c' on [0, high], whose mean is that of c'; low is so near to 0 that the cubic is straight there.
- */
-LANES_INLINE mask_lanes cubic_crosses(const struct cubic *c, lanes low, lanes high, lanes slopes)
-{
-#ifdef PHANTOM_REAL_FIXED
-	return (c->c0 + mul_fitting(c->c1, low) < 0) ^ (3 * c->c0 + mul_fitting(slopes, high) < 0);
-#else
-	(void)slopes;
-	return (cubic_at(c, low) < lanes_all(0)) ^ (cubic_at(c, high) < lanes_all(0));
-#endif
-}
-
-/* What Halley's method takes off h in the lanes of the mask: c c' / (c'^2 - c c''/2). */
-LANES_INLINE lanes cubic_correction(const struct cubic *c, lanes h, mask_lanes usual)
-{
-	lanes value = cubic_at(c, h);
-	lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(REAL(1)));
-	lanes square = mul_fitting(slope, slope);
-	lanes under = square - mul_fitting(value, mul_fitting(3 * c->c3, h) + c->c2);
-	/* bent too much for it: Newton's */
-	mask_lanes near = under > lanes_part(square, 4);
-
-	return divide(mul_fitting(value, lanes_select(near, slope, lanes_all(REAL(1)))),
-		      lanes_select(near, under, slope));
-}
-
-/* Roots in [-rounding, H] of the candidate lanes. Returns the number of rounds in `roots`. */
-LANES_INLINE u32 find_roots(const struct block *block, u32 step, const struct cubic *any,
-			    mask_lanes candidates, real rounding, u32 newton_steps,
-			    struct step_roots *roots)
+/* The root in [-rounding, H] of the candidate lanes that are monotone; returns whether there is any. */
+LANES_INLINE bool find_roots(const struct block *block, u32 step, const struct cubic *any,
+			     mask_lanes candidates, real rounding, u32 newton_steps,
+			     struct step_roots *roots)
 {
 	const lanes low = lanes_all(-rounding), zero = lanes_all(0);
 	lanes high = block->height_limit[step];
@@ -258,37 +82,52 @@ LANES_INLINE u32 find_roots(const struct block *block, u32 step, const struct cu
 	mask_lanes falling = (most < zero) & (lanes_part(least, MONOTONE_PARTS) >= most);
 	mask_lanes rising = (least > zero) & (lanes_part(most, MONOTONE_PARTS) <= least);
 	mask_lanes usual = candidates & (falling | rising);
-	u32 split, l, i, rounds = 1;
 	lanes h;
+	u32 i;
 
 	roots->split = candidates & ~usual;
 	roots->valid[0] = usual & cubic_crosses(&c, low, high, first + middle + last);
+	if (!mask_bits(roots->valid[0]))
+		return false;
 	roots->sign[0] = lanes_select(falling, lanes_all(REAL(1)), lanes_all(REAL(-1)));
-	split = mask_bits(roots->split);
-	if (!split && !mask_bits(roots->valid[0]))
-		return 0;
 	h = lanes_min(lanes_max(divide(-c.c0, lanes_select(usual, c.c1, lanes_all(REAL(1)))), low),
 		      high);
 	for (i = 0; i < newton_steps; i++)
 		h = lanes_min(lanes_max(h - cubic_correction(&c, h, usual), low), high);
 	roots->h[0] = h;
-	if (!split)
-		return rounds;
-	for (i = 1; i < PROJECTED_ROOTS; i++) {
-		roots->h[i] = zero;
-		roots->sign[i] = zero;
+	return true;
+}
+
+#ifndef PHANTOM_REAL_SINGLE
+/* Beside them the roots of the lanes whose interval is split; `rounds` of them are there already. */
+static inline u32 find_split_roots(const struct block *block, u32 step, const struct cubic *c,
+				   real rounding, u32 rounds, struct step_roots *roots)
+{
+	u32 split = mask_bits(roots->split), l, i;
+
+	for (i = rounds; i < PROJECTED_ROOTS; i++) {
+		roots->h[i] = lanes_all(0);
+		roots->sign[i] = lanes_all(0);
 		roots->valid[i] = (mask_lanes){};
 	}
 	for (l = 0; l < PHANTOM_LANES; l++) {
-		struct real_cubic one = {any->c0[l], any->c1[l], any->c2[l], any->c3[l]};
+		struct fine_cubic one = {c->c0[l], c->c1[l], c->c2[l], c->c3[l]};
+		struct fine_roots found;
 
-		if (split >> l & 1)
-			split_roots(&one, -rounding, high[l], l, roots);
+		if (!(split >> l & 1))
+			continue;
+		split_roots(&one, -rounding, block->height_limit[step][l], &found);
+		for (i = 0; i < found.count; i++) {
+			roots->h[i][l] = found.h[i];
+			roots->sign[i][l] = found.falling[i] ? REAL(1) : REAL(-1);
+			roots->valid[i][l] = -1;
+		}
 	}
 	while (rounds < PROJECTED_ROOTS && mask_bits(roots->valid[rounds]))
 		rounds++;
 	return rounds;
 }
+#endif
 
 /* Is the root in the shell, and what does it give? */
 LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
@@ -390,6 +229,13 @@ LANES_NOINLINE real shell_weight(const struct block *block, u32 lane, const stru
 	return window_part(wall, count);
 }
 
+/* A monotone cubic has one root; split ones are worked on with the others but in float32, see folded.h. */
+#ifdef PHANTOM_REAL_SINGLE
+#define PROJECTED_ROUNDS 1
+#else
+#define PROJECTED_ROUNDS PROJECTED_ROOTS
+#endif
+
 /* Appends the roots of a step to `list`, patch by patch; returns how many. */
 static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
 				 real rounding, u32 newton_steps, u32 first_patch, bool fan,
@@ -402,37 +248,51 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	mask_lanes candidates = (lanes_abs(height) < block->radius[step]) &
 				within_shell(block, step, q, height, block->lean[step],
 					     newton_steps > 0, lanes_all(4 * soft));
-	struct shell_point point[PROJECTED_ROOTS];
+	struct shell_point point[PROJECTED_ROUNDS];
 	struct step_roots roots;
 	struct cubic c;
-	u32 rounds, any = 0, count = 0, l, i;
+	u32 rounds, split, any = 0, count = 0, i;
 
 	if (!mask_bits(candidates))
 		return 0;
 	c = shell_cubic(block, step, q, height);
 	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
+	split = mask_bits(roots.split);
+#ifndef PHANTOM_REAL_SINGLE
+	if (split)
+		rounds = find_split_roots(block, step, &c, rounding, rounds, &roots);
+	split = 0;
+#endif
 	for (i = 0; i < rounds; i++) {
 		shell_evaluate(block, step, tip, roots.h[i], roots.valid[i], roots.split, rounding,
 			       fan, &point[i]);
 		any |= mask_bits(point[i].accepted);
 	}
-	for (l = 0; any >> l; l++) {
+	for (any |= split; any; any &= any - 1) {
+		u32 l = (u32)__builtin_ctz(any), lane = step * PHANTOM_LANES + l;
+
+#ifdef PHANTOM_REAL_SINGLE
+		if (split >> l & 1) {
+			count += folded_roots(block, lane, tip, rounding, first_patch + l,
+					      &list[count]);
+			continue;
+		}
+#endif
 		for (i = 0; i < rounds; i++) {
+			struct projected_root *root = &list[count];
+
 			if (!point[i].accepted[l])
 				continue;
-			list[count].normal = lanes3_lane(point[i].normal, l);
-			list[count].height = point[i].height[l];
-			list[count].magnitude = point[i].magnitude[l];
-			list[count].sign = roots.sign[i][l];
-			list[count].weight = REAL(1);
+			root->normal = lanes3_lane(point[i].normal, l);
+			root->height = point[i].height[l];
+			root->magnitude = point[i].magnitude[l];
+			root->sign = roots.sign[i][l];
+			root->weight = REAL(1);
+			root->patch = first_patch + l;
 			if (point[i].near_wall[l])
-				list[count].weight =
-					shell_weight(block, step * PHANTOM_LANES + l, &point[i],
-						     roots.h[i][l], roots.sign[i][l], soft, fan);
-			if (!(list[count].weight > 0))
-				continue;
-			list[count].patch = first_patch + l;
-			count++;
+				root->weight = shell_weight(block, lane, &point[i], roots.h[i][l],
+							    roots.sign[i][l], soft, fan);
+			count += root->weight > 0;
 		}
 	}
 	return count;
