@@ -8,7 +8,8 @@
  * from the tip is formed exactly (nm_difference()).
  *
  * Lanes that can never be in contact (patches that cannot be computed, and the padding of the last
- * block) have R = -1, a bounding sphere of no size and three equal corners.
+ * block) have R = -1, a bounding sphere of no size and three equal corners. Of a face that cannot be
+ * computed corners, sphere and a plane are kept: it is in nobody's way but of a path through it.
  */
 #ifndef PHANTOM_FLOAT_BLOCK_H
 #define PHANTOM_FLOAT_BLOCK_H

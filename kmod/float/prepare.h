@@ -17,6 +17,9 @@
  */
 #define SLIVER_HEIGHT_NM 16
 
+/* Of such a triangle's three normals, added up, that much must stand across its longest edge. */
+#define SLIT_NORMAL_MIN WIDE(1e-3)
+
 /*
  * A fan with less between its normals is too narrow to have a shell: over an edge, radians; over a
  * vertex, their square. What is left open at R is below a nm.
@@ -276,10 +279,10 @@ static inline void prepare_shell(struct block *block, u32 lane, const struct pat
 	block_set_tame(block, lane, patch_tame(p, height, extent));
 }
 
-static inline void prepare_patch(struct phantom_float_set *set, struct block *block, u32 lane,
+/* Corners and bounding sphere; returns its radius. */
+static inline wide prepare_place(struct phantom_float_set *set, struct block *block, u32 lane,
 				 const struct phantom_patch *patch, const struct patch_geometry *p)
 {
-	const struct float_material *material = &set->materials[patch->material];
 	/* x1 - x0 and x2 - x0 as seen from the centroid */
 	struct wide3 e1 = p->edge[0], e2 = wide3_scale(p->edge[2], WIDE(-1));
 	struct wide3 centre = wide3_scale(wide3_add(e1, e2), WIDE(1.0 / 3));
@@ -299,9 +302,18 @@ static inline void prepare_patch(struct phantom_float_set *set, struct block *bl
 	/* a little larger, so that rounding in the tick never rules out a patch in reach */
 	extent = wide_add(wide_mul(wide_sqrt(extent2), WIDE(1 + 1e-5)), WIDE(1e-5));
 	set->extent = real_max(set->extent, real_from_wide(extent));
-	block->radius[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->radius;
 	row3_set(&block->centre, lane, centre);
 	row_set(block->extent, lane, extent);
+	return extent;
+}
+
+static inline void prepare_patch(struct phantom_float_set *set, struct block *block, u32 lane,
+				 const struct phantom_patch *patch, const struct patch_geometry *p)
+{
+	const struct float_material *material = &set->materials[patch->material];
+	wide extent = prepare_place(set, block, lane, patch, p);
+
+	block->radius[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->radius;
 	block->stiffness[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->stiffness;
 	prepare_edges(block, lane, p);
 	prepare_lean(block, lane, p);
@@ -333,6 +345,40 @@ static inline void prepare_idle(struct block *block, u32 lane)
 	row_set(block->lean, lane, WIDE(0));
 	row_set(block->lean_paper, lane, WIDE(0));
 	prepare_shell(block, lane, &p, WIDE(0));
+}
+
+/*
+ * The plane of a face too low to have one: through its longest edge, towards the mean of its normals. False for
+ * a face that is a point, and for normals along that edge.
+ */
+static inline bool slit_plane(const struct patch_geometry *p, struct wide3 *plane)
+{
+	struct wide3 normal = wide3_add(wide3_add(p->normal[0], p->normal[1]), p->normal[2]);
+	u32 longest = 0, i;
+	wide length;
+
+	for (i = 1; i < 3; i++)
+		if (wide_less(p->length2[longest], p->length2[i]))
+			longest = i;
+	if (!wide_less(WIDE(0), p->length2[longest]))
+		return false;
+	length = wide_div(wide3_dot(normal, p->edge[longest]), p->length2[longest]);
+	normal = wide3_sub(normal, wide3_scale(p->edge[longest], length));
+	length = wide3_length(normal);
+	if (!wide_less(SLIT_NORMAL_MIN, length))
+		return false;
+	*plane = wide3_scale(normal, wide_inverse(length));
+	return true;
+}
+
+/* A face that has no shell: never in contact, but no tip gets through it. See crossing_hand_over(). */
+static inline void prepare_slit(struct phantom_float_set *set, struct block *block, u32 lane,
+				const struct phantom_patch *patch, const struct patch_geometry *p,
+				struct wide3 plane)
+{
+	prepare_idle(block, lane);
+	prepare_place(set, block, lane, patch, p);
+	row3_set(&block->face_normal, lane, plane);
 }
 
 static inline u32 blocks_for(u32 patch_count)
@@ -419,7 +465,9 @@ static inline void prepare_one(struct phantom_float_prepare *prepare, u32 index)
 	struct phantom_patch turned;
 	u32 at = lane_of_patch(prepare, index), lane = at % PHANTOM_BLOCK, i;
 	struct block *block = &set->blocks[at / PHANTOM_BLOCK];
+	bool face = patch->kind == PHANTOM_PATCH_FACE, measured;
 	struct patch_geometry geometry;
+	struct wide3 plane;
 
 	if (patch->kind == PHANTOM_PATCH_EDGE) {
 		turn_edge_fan(patch, &turned);
@@ -432,14 +480,18 @@ static inline void prepare_one(struct phantom_float_prepare *prepare, u32 index)
 	block->surface[lane] = patch->surface;
 	for (i = 0; i < 3; i++)
 		block->vertex[i][lane] = patch->vertex[i];
-	if ((patch->kind == PHANTOM_PATCH_FACE ? face_measure(patch, &geometry)
-					       : fan_measure(patch, &geometry)) &&
-	    patch_fits(&geometry)) {
+	measured = face ? face_measure(patch, &geometry) : fan_measure(patch, &geometry);
+	if (measured && patch_fits(&geometry)) {
 		prepare_patch(set, block, lane, patch, &geometry);
-	} else {
-		prepare_idle(block, lane);
-		prepare->refused++;
+		return;
 	}
+	prepare->refused++;
+	if (measured)
+		plane = geometry.lead;
+	if (face && (measured || slit_plane(&geometry, &plane)))
+		prepare_slit(set, block, lane, patch, &geometry, plane);
+	else
+		prepare_idle(block, lane);
 }
 
 /* The rest of the block in which lane `at` - 1 is the last one used. */

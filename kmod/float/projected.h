@@ -18,11 +18,12 @@
  *
  *   S = sum s k (R - h|N|) n        F = S min(1, kR / |S|)
  *
- * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than 1 / MONOTONE_PART
+ * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than MONOTONE_PARTS
  * fold (its Bernstein coefficients say so), there is one root or none, and from -c0/c1 it is found in
  * model.newton_steps steps: the accuracy knob. They are Halley's, a Newton step with the curvature in
  * it: an error of e becomes e^3, not e^2, for the same one division. Elsewhere the interval is split
- * at the critical points and each part that changes sign is solved by Newton kept in its bracket.
+ * at the critical points and each part that changes sign is solved by Newton kept in its bracket (cubic.h);
+ * float32 does that in float64, from the corners on (folded.h).
  *
  * Fans. Over an edge with two normals at an end, and over a vertex with three and more, the shell
  * is that of a triangle whose corners coincide: A0 = 0, and over a vertex A1 = 0 too. Divided by h,
@@ -244,7 +245,7 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	const real soft = SOFT_WALL * rounding;
 	struct lanes3 q = from_corner(block, step, 0, tip);
 	lanes height = lanes3_dot_fitting(row3_step(&block->face_normal, step), q);
-	/* a first guess alone, without a Newton step, may take a tip beside the shell for one in it */
+	/* a first guess alone, without a step, may take a tip beside the shell for one in it */
 	mask_lanes candidates = (lanes_abs(height) < block->radius[step]) &
 				within_shell(block, step, q, height, block->lean[step],
 					     newton_steps > 0, lanes_all(4 * soft));
