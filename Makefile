@@ -6,6 +6,8 @@ BUILD   := build
 RELEASE := $(BUILD)/release
 JOBS    ?= $(shell nproc)
 CMAKE   := cmake -G Ninja -S userland
+# The same in tools/test, so that its release stage and `make all` compile each file once.
+SETTINGS := -B $(RELEASE) -DCMAKE_BUILD_TYPE=Release -DPHANTOM_BIN=$(CURDIR)/$(BUILD)/bin
 
 .PHONY: help all demo test hard-cases penetration fuzz vm-test vm-debug modules install bench lint clean
 
@@ -19,8 +21,7 @@ all: ## build every program into build/bin
 
 .PHONY: programs
 programs:
-	@$(CMAKE) -B $(RELEASE) -DCMAKE_BUILD_TYPE=Release -DPHANTOM_TESTS=OFF \
-	  -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$(CURDIR)/$(BUILD)/bin >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
+	@$(CMAKE) $(SETTINGS) -DPHANTOM_TESTS=OFF >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
 	@cmake --build $(RELEASE) -j $(JOBS)
 
 demo: ## touch the Stanford bunny: live status, picture, chart, trace
@@ -47,10 +48,9 @@ penetration: ## a table: the force under bumpy spheres, in six minutes, against 
 table:
 	@tools/bootstrap build
 	@mkdir -p $(BUILD)
-	@$(CMAKE) -B $(RELEASE) -DCMAKE_BUILD_TYPE=Release -DPHANTOM_TESTS=ON \
-	  -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$(CURDIR)/$(BUILD)/bin >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
+	@$(CMAKE) $(SETTINGS) -DPHANTOM_TESTS=ON >$(RELEASE).log 2>&1 || { cat $(RELEASE).log; exit 1; }
 	@cmake --build $(RELEASE) -j $(JOBS) --target $(TABLE)
-	@$(BUILD)/bin/$(TABLE)
+	@$(RELEASE)/bin/$(TABLE)
 
 vm-test: ## boot Debian's RT kernels in QEMU and test the real module there
 	@tools/bootstrap vm

@@ -63,13 +63,17 @@ std::vector<reference::Triangle> prepared(mesh::Soup soup, double fit_mm, double
 
 std::vector<reference::Triangle> with_rims(std::vector<reference::Triangle> triangles)
 {
-    mesh::Mesh mesh;
+    mesh::Soup soup;
     for (const auto& t : triangles) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), t.corner.begin(), t.corner.end());
-        mesh.faces.push_back({first, first + 1, first + 2});
-        mesh.neighbours.push_back({mesh::no_neighbour, mesh::no_neighbour, mesh::no_neighbour});
+        const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+        soup.vertices.insert(soup.vertices.end(), t.corner.begin(), t.corner.end());
+        soup.faces.push_back({first, first + 1, first + 2});
     }
+    const mesh::Triple alone{mesh::no_neighbour, mesh::no_neighbour, mesh::no_neighbour};
+    mesh::Mesh mesh;
+    mesh.neighbours = std::vector<mesh::Triple>(soup.faces.size(), alone);
+    mesh.vertices = std::move(soup.vertices);
+    mesh.faces = std::move(soup.faces);
     const mesh::Rims rims = mesh::make_rims(mesh, triangles[0].radius);
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
         triangles[f].surface = rims.surface_of(f);

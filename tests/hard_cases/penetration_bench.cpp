@@ -58,12 +58,12 @@ class Table {
 
     void begin(const study::PenetrationSurface& surface) const
     {
-        const study::SurfaceLevel& finest = surface.finest();
-        fmt::print("\n{} triangles (f = {}), 64 in a set\n", finest.scene.triangles(), finest.frequency);
-        for (const auto& level : surface.levels())
+        const std::vector<unsigned>& frequency = surface.frequencies();
+        fmt::print("\n{} triangles (f = {}), 64 in a set\n", surface.scene().triangles(), frequency[0]);
+        for (std::size_t level = 0; level < frequency.size(); ++level)
             fmt::print("  {}level f {:3}: 64 triangles reach {:.2f} mm, {:.4f} mm from the finest\n",
-                       markdown_ ? "- " : "", level->frequency, level->detail.reach_mm,
-                       level->detail.error_mm);
+                       markdown_ ? "- " : "", frequency[level], surface.levels()->coverage(level).p1_mm,
+                       surface.levels()->error_mm(level));
         if (markdown_)
             fmt::print(
                 "\n| mm/s | kHz | sets | level | error N p50 / p99 / max | largest step N | lost | fell "
@@ -86,7 +86,7 @@ class Table {
         const std::string mm_s = swing > 0 ? fmt::format("{:.0f}-{:.0f}", speed - swing, speed + swing)
                                            : fmt::format("{:g}", speed);
         const Peers* peers = options.timely && rate == 1000.0
-                                 ? find(surface.finest().frequency, options.path.speed_mm_s)
+                                 ? find(surface.frequencies()[0], options.path.speed_mm_s)
                                  : nullptr;
         if (markdown_)
             fmt::print("| {} | {:g} | {} | {} | {} | {:.3f} | {} | {} | {} | {} | {} |\n", mm_s, rate * 1e-3,
@@ -122,7 +122,7 @@ class Table {
         for (std::size_t level = 0; level < r.level_ticks.size(); ++level) {
             if (r.level_ticks[level] == 0)
                 continue;
-            last = surface.levels()[level]->frequency;
+            last = surface.frequencies()[level];
             first = first ? first : last;
         }
         return first == last ? fmt::format("f {}", first) : fmt::format("f {}-{}", first, last);

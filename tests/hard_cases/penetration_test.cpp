@@ -56,11 +56,11 @@ class Penetration : public testing::Test {
         std::size_t coarsest = 0;
         for (std::size_t level = 0; level < result.level_ticks.size(); ++level)
             coarsest = result.level_ticks[level] ? level : coarsest;
-        const study::SurfaceLevel& level = *surface_->levels()[coarsest];
-        const double edge_mm = 70.0 / level.frequency;
-        const double edge_finest_mm = 70.0 / surface_->finest().frequency;
+        const double edge_mm = 70.0 / surface_->frequencies()[coarsest];
+        const double edge_finest_mm = 70.0 / surface_->frequencies()[0];
         return study::soft_stiffness_n_mm *
-               (level.detail.error_mm + depth_max_mm * (edge_mm + edge_finest_mm) / (2 * bump_radius_mm));
+               (surface_->levels()->error_mm(coarsest) +
+                depth_max_mm * (edge_mm + edge_finest_mm) / (2 * bump_radius_mm));
     }
 
     static study::PenetrationSurface* surface_;

@@ -239,21 +239,27 @@ TreeData<K> build_tree(const MeshView& mesh, unsigned threads)
     auto boxes = boxes_of(mesh, data.grid, threads);
     const Shape shape = split(boxes, lanes, threads);
 
-    data.nodes.resize(shape.nodes.size());
-    data.leaves.resize(shape.leaves);
+    struct Storage {
+        std::vector<Node<K>> nodes;
+        std::vector<Leaf> leaves;
+    };
+    auto storage = std::make_shared<Storage>();
+    auto& [nodes, leaves] = *storage;
+    nodes.resize(shape.nodes.size());
+    leaves.resize(shape.leaves);
     parallel_for(0, shape.nodes.size(), threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; n++) {
-            data.nodes[n] = empty_node<K>();
+            nodes[n] = empty_node<K>();
             for (int i = 0; i < shape.nodes[n].count; i++) {
                 const auto& child = shape.nodes[n].children[i];
                 Hull<K> hull = Hull<K>::empty();
                 if (child.reference & leaf_flag) {
-                    Leaf& leaf = data.leaves[child.reference & ~leaf_flag];
+                    Leaf& leaf = leaves[child.reference & ~leaf_flag];
                     fill_leaf(leaf, std::span(boxes).subspan(child.begin, child.end - child.begin), mesh,
                               data.grid);
                     hull = hull_of<K>(leaf);
                 }
-                set_child(data.nodes[n], i, hull, child.reference);
+                set_child(nodes[n], i, hull, child.reference);
             }
         }
     });
@@ -261,8 +267,33 @@ TreeData<K> build_tree(const MeshView& mesh, unsigned threads)
     for (std::size_t n = shape.nodes.size(); n-- > 0;)
         for (int i = 0; i < shape.nodes[n].count; i++)
             if (const auto reference = shape.nodes[n].children[i].reference; !(reference & leaf_flag))
-                set_child(data.nodes[n], i, hull_of(data.nodes[reference]), reference);
+                set_child(nodes[n], i, hull_of(nodes[reference]), reference);
+    data.nodes = nodes;
+    data.leaves = leaves;
+    data.storage = std::move(storage);
     return data;
+}
+
+template <int K>
+bool consistent(const TreeData<K>& data)
+{
+    if (data.nodes.empty() != (data.triangles == 0))
+        return false;
+    for (std::size_t n = 0; n < data.nodes.size(); n++) {
+        for (int lane = 0; lane < lanes; lane++) {
+            if (data.nodes[n].low[0][lane] == infinity) // unused
+                continue;
+            const std::uint32_t child = data.nodes[n].child[lane];
+            const std::size_t index = child & ~leaf_flag;
+            if (child & leaf_flag ? index >= data.leaves.size() : index <= n || index >= data.nodes.size())
+                return false;
+        }
+    }
+    return std::all_of(data.leaves.begin(), data.leaves.end(), [&](const Leaf& leaf) {
+        return std::all_of(leaf.triangle, leaf.triangle + lanes, [&](std::uint32_t triangle) {
+            return triangle < data.triangles || triangle == no_triangle;
+        });
+    });
 }
 
 #define PHANTOM_FDH_BUILD(K)                                                                                 \
@@ -270,7 +301,8 @@ TreeData<K> build_tree(const MeshView& mesh, unsigned threads)
     template Hull<K> hull_of<K>(const Node<K>&);                                                             \
     template void set_child<K>(Node<K>&, int, const Hull<K>&, std::uint32_t);                                \
     template Node<K> empty_node<K>();                                                                        \
-    template TreeData<K> build_tree<K>(const MeshView&, unsigned);
+    template TreeData<K> build_tree<K>(const MeshView&, unsigned);                                           \
+    template bool consistent<K>(const TreeData<K>&);
 PHANTOM_FDH_BUILD(6)
 PHANTOM_FDH_BUILD(14)
 PHANTOM_FDH_BUILD(18)

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+#include <memory>
+#include <span>
 
 #include "fdh/grid.hpp"
 #include "fdh/layout.hpp"
@@ -13,14 +14,20 @@ namespace phantom::fdh {
 template <int K>
 struct TreeData {
     Grid grid;
-    std::vector<Node<K>> nodes; ///< parents before children, [0] is the root; empty for no triangles
-    std::vector<Leaf> leaves;
+    std::span<const Node<K>> nodes; ///< parents before children, [0] is the root; empty for no triangles
+    std::span<const Leaf> leaves;
     std::size_t triangles = 0;
+    std::shared_ptr<const void> storage{}; ///< what nodes and leaves lie in
 };
 
 /// Throws as TriangleTree::build says.
 template <int K>
 TreeData<K> build_tree(const MeshView& mesh, unsigned threads);
+
+/// False if a child is not there or does not stand behind its parent, or a leaf names a triangle that is not
+/// there: a search would not end, or leave the arrays.
+template <int K>
+bool consistent(const TreeData<K>& data);
 
 /// The hull of everything below a node, per direction.
 template <int K>

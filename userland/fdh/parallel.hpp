@@ -32,6 +32,17 @@ void fork_join(First&& first, Second&& second)
         thread.join();
 }
 
+/// Runs `work` on that many threads at once, this one among them, or on as many as are to be had. It may not
+/// throw.
+template <class Work>
+void on_threads(unsigned threads, const Work& work)
+{
+    if (threads <= 1)
+        work();
+    else
+        fork_join([&] { on_threads(threads / 2, work); }, [&] { on_threads(threads - threads / 2, work); });
+}
+
 /// body(begin, end) over [begin, end) in one piece per thread. body may not throw.
 template <class Body>
 void parallel_for(std::size_t begin, std::size_t end, unsigned threads, const Body& body)

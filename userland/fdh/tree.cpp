@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "fdh/tree.hpp"
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -10,28 +11,60 @@
 
 namespace phantom::fdh {
 
+namespace {
+
+void check_isa(Isa isa)
+{
+    if (!isa_available(isa))
+        throw std::invalid_argument(std::string("fdh: this processor or build has no ") + isa_name(isa));
+}
+
+/// The elements that the bytes are, or nothing if they are none.
+template <typename T>
+std::optional<std::span<const T>> elements_of(std::span<const std::byte> bytes)
+{
+    if (bytes.size() % sizeof(T) != 0 || reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(T) != 0)
+        return std::nullopt;
+    return std::span(reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T));
+}
+
+} // namespace
+
 template <int K>
-TriangleTree<K>::TriangleTree(std::unique_ptr<Impl> impl) : impl_(std::move(impl))
+TriangleTree<K>::TriangleTree(std::shared_ptr<const Impl> impl) : impl_(std::move(impl))
 {
 }
-template <int K>
-TriangleTree<K>::TriangleTree(TriangleTree&&) noexcept = default;
-template <int K>
-TriangleTree<K>& TriangleTree<K>::operator=(TriangleTree&&) noexcept = default;
-template <int K>
-TriangleTree<K>::~TriangleTree() = default;
 
 template <int K>
 TriangleTree<K> TriangleTree<K>::build(const MeshView& mesh, const BuildOptions& options)
 {
-    if (!isa_available(options.isa))
-        throw std::invalid_argument(std::string("fdh: this processor or build has no ") +
-                                    isa_name(options.isa));
-    auto impl = std::make_unique<Impl>();
-    impl->data = build_tree<K>(mesh, thread_count(options.threads));
-    impl->isa = resolve_isa(options.isa);
-    impl->kernels = &search_kernels<K>(impl->isa);
-    return TriangleTree(std::move(impl));
+    check_isa(options.isa);
+    return TriangleTree(
+        std::make_shared<const Impl>(build_tree<K>(mesh, thread_count(options.threads)), options.isa));
+}
+
+template <int K>
+TreeImage TriangleTree<K>::image() const
+{
+    const TreeData<K>& data = impl_->data;
+    return {data.grid.origin, data.grid.step, data.triangles, std::as_bytes(data.nodes),
+            std::as_bytes(data.leaves)};
+}
+
+template <int K>
+std::optional<TriangleTree<K>> TriangleTree<K>::open(const TreeImage& image,
+                                                     std::shared_ptr<const void> keeper, Isa isa)
+{
+    check_isa(isa);
+    const auto nodes = elements_of<Node<K>>(image.nodes);
+    const auto leaves = elements_of<Leaf>(image.leaves);
+    if (!nodes || !leaves || !(image.step > 0) || image.triangles >= leaf_flag)
+        return std::nullopt;
+    TreeData<K> data{
+        {image.origin, image.step, 1 / image.step}, *nodes, *leaves, image.triangles, std::move(keeper)};
+    if (!consistent(data))
+        return std::nullopt;
+    return TriangleTree(std::make_shared<const Impl>(std::move(data), isa));
 }
 
 template <int K>
@@ -95,8 +128,7 @@ std::size_t TriangleTree<K>::triangles() const
 template <int K>
 std::size_t TriangleTree<K>::bytes() const
 {
-    return sizeof(Impl) + impl_->data.nodes.capacity() * sizeof(Node<K>) +
-           impl_->data.leaves.capacity() * sizeof(Leaf);
+    return sizeof(Impl) + impl_->data.nodes.size_bytes() + impl_->data.leaves.size_bytes();
 }
 
 template <int K>

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "fdh/hull.hpp"
 #include "fdh/isa.hpp"
@@ -19,8 +21,18 @@ struct BuildOptions {
     Isa isa = Isa::best;  ///< for the queries; must be available (isa_available)
 };
 
-/// A hierarchy of FDH-K hulls over the triangles of one mesh. Immutable; any number of threads may
-/// query it at once. Distances hold for degenerate triangles too (a segment, a point).
+/// A tree as bytes, to be kept in a file and opened in place. They are of this machine: its byte order and
+/// this version's layout.
+struct TreeImage {
+    Point origin{0, 0, 0};
+    double step = 1;
+    std::uint64_t triangles = 0;
+    std::span<const std::byte> nodes, leaves; ///< each to be aligned to image_alignment
+};
+inline constexpr std::size_t image_alignment = 64;
+
+/// A hierarchy of FDH-K hulls over the triangles of one mesh. Immutable, and shared by its copies; any number
+/// of threads may query it at once. Distances hold for degenerate triangles too (a segment, a point).
 ///
 /// Accuracy. The tree keeps vertices rounded to a grid of its own, fine against the mesh's extent (see
 /// accuracy()), and computes in double from there. Reported distances are off by no more than accuracy(p);
@@ -36,9 +48,13 @@ class TriangleTree {
     /// if options.isa is not available. Vertices that no triangle uses are not looked at.
     static TriangleTree build(const MeshView& mesh, const BuildOptions& options = {});
 
-    TriangleTree(TriangleTree&&) noexcept;
-    TriangleTree& operator=(TriangleTree&&) noexcept;
-    ~TriangleTree();
+    /// The bytes live as long as the tree or a copy of it.
+    [[nodiscard]] TreeImage image() const;
+    /// A tree in the bytes of an image, which `keeper` keeps alive. nullopt if they cannot be one: sizes,
+    /// alignment or references that do not fit. Whether they are the mesh's is for the caller to know.
+    /// Throws std::invalid_argument if `isa` is not available.
+    static std::optional<TriangleTree> open(const TreeImage& image, std::shared_ptr<const void> keeper,
+                                            Isa isa = Isa::best);
 
     /// The `count` nearest triangles within max_radius of p. `out` is reused: no allocation once warm.
     /// A hit may be farther than max_radius by twice accuracy(p) at most. A point with a NaN or a coordinate
@@ -67,8 +83,8 @@ class TriangleTree {
   private:
     friend class SceneTree<K>;
     struct Impl;
-    explicit TriangleTree(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    explicit TriangleTree(std::shared_ptr<const Impl> impl);
+    std::shared_ptr<const Impl> impl_;
 };
 
 extern template class TriangleTree<6>;

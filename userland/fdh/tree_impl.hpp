@@ -2,6 +2,8 @@
 // What a triangle tree consists of; shared with the scene tree, which searches several.
 #pragma once
 
+#include <utility>
+
 #include "fdh/build.hpp"
 #include "fdh/search.hpp"
 #include "fdh/tree.hpp"
@@ -11,8 +13,13 @@ namespace phantom::fdh {
 template <int K>
 struct TriangleTree<K>::Impl {
     TreeData<K> data;
-    Isa isa = Isa::scalar;
-    const SearchKernels<K>* kernels = nullptr;
+    Isa isa;
+    const SearchKernels<K>* kernels;
+
+    Impl(TreeData<K> data_, Isa asked)
+        : data(std::move(data_)), isa(resolve_isa(asked)), kernels(&search_kernels<K>(isa))
+    {
+    }
 
     /// Adds what is near p [mesh coordinates] to a collector's hits.
     template <class Collector>

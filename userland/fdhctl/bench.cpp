@@ -94,6 +94,7 @@ int run(const Options& options)
     study::BenchOptions bench;
     bench.scene = options.scene.scene;
     bench.load = options.scene.load_options();
+    bench.load.cache.reset(); // it times the preparation
     bench.budget = static_cast<std::uint32_t>(std::stoul(options.budget.budget));
     bench.queries = options.queries;
     Result<study::BenchReport> report = [&] {

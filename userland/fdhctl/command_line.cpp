@@ -11,6 +11,7 @@
 
 #include "base/progress_bar.hpp"
 #include "feeder/control_socket.hpp"
+#include "scene/cache.hpp"
 
 namespace phantom::fdhctl {
 
@@ -59,7 +60,8 @@ int fail(const Error& error)
 
 void SceneOptions::add_preparation(CLI::App& app)
 {
-    app.add_option("--unit", unit, "unit of the file's coordinates: mm, cm, m, in, um [mm, or the scene's]")
+    app.add_option("--unit", unit,
+                   "unit of the file's coordinates: mm, cm, m, in, um [the scene's; else mm, glTF m]")
         ->check(CLI::IsMember({"mm", "cm", "m", "in", "um"}))
         ->type_name("UNIT");
     app.add_option("--fit", fit_mm, "scale the longest side to this and centre at the origin")
@@ -78,7 +80,7 @@ void SceneOptions::add_preparation(CLI::App& app)
 
 void SceneOptions::add(CLI::App& app)
 {
-    app.add_option("scene", scene, "a mesh (PLY, OBJ, STL, OFF) or a scene file (TOML)")
+    app.add_option("scene", scene, "a mesh (PLY, OBJ, STL, OFF, VTP, VTK, 3DS, glTF) or a scene file (TOML)")
         ->required()
         ->type_name("SCENE");
     add_preparation(app);
@@ -88,6 +90,7 @@ void SceneOptions::add(CLI::App& app)
     app.add_option("--radius", radius_mm, "contact radius of every material [1, or the scene's]")
         ->check(positive())
         ->type_name("MM");
+    app.add_flag("!--no-cache", use_cache, "prepare the meshes anew (fdhctl cache shows what is kept)");
 }
 
 scene::LoadOptions SceneOptions::load_options() const
@@ -100,6 +103,8 @@ scene::LoadOptions SceneOptions::load_options() const
     options.unit = unit;
     options.stiffness_n_mm = stiffness_n_mm;
     options.radius_mm = radius_mm;
+    if (use_cache)
+        options.cache = scene::cache_directory();
     return options;
 }
 
@@ -124,6 +129,8 @@ std::vector<std::string> SceneOptions::arguments() const
         words.insert(words.end(), {"--prepare", prepare});
     if (split_mm > 0)
         add_number("--split", split_mm);
+    if (!use_cache)
+        words.emplace_back("--no-cache");
     return words;
 }
 
@@ -132,6 +139,8 @@ void print_warnings(const scene::Scene& scene)
     for (const scene::Object& object : scene.objects)
         for (const std::string& warning : object.report.warnings)
             std::fprintf(stderr, "fdhctl: warning: %s: %s\n", object.file.string().c_str(), warning.c_str());
+    for (const std::string& note : scene.notes)
+        std::fprintf(stderr, "fdhctl: %s\n", note.c_str());
 }
 
 Result<scene::Scene> load_scene(const SceneOptions& options)
@@ -192,6 +201,26 @@ void BudgetOptions::apply(feeder::FeederOptions& options) const
     options.grow_budget = !fixed;
     if (!options.all)
         options.budget = static_cast<std::uint32_t>(std::stoul(budget));
+}
+
+void LevelsOption::add(CLI::App& app, const char* otherwise)
+{
+    const auto check = [](std::string& text) {
+        return scene::level_wish(text) ? std::string()
+                                       : fmt::format("expected auto, off or a number, found '{}'", text);
+    };
+    app.add_option("--levels", word,
+                   fmt::format("of detail, simplified, for a fast tip; auto: where the mesh is too fine for "
+                               "the budget, which takes about as long and as much memory as preparing it; N: "
+                               "that one alone [{}]",
+                               otherwise))
+        ->check(CLI::Validator(check, ""))
+        ->type_name("auto|off|N");
+}
+
+std::optional<scene::LevelWish> LevelsOption::wish() const
+{
+    return scene::level_wish(word);
 }
 
 CLI::Option* add_device_option(CLI::App& app, std::string& node)

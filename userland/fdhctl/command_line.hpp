@@ -10,6 +10,7 @@
 
 #include "base/result.hpp"
 #include "feeder/feeder.hpp"
+#include "scene/levels.hpp"
 #include "scene/scene.hpp"
 
 namespace phantom::fdhctl {
@@ -27,6 +28,7 @@ struct Command {
 };
 
 Run add_bench(CLI::App& app);
+Run add_cache(CLI::App& app);
 Run add_devices(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_load(CLI::App& app);
@@ -55,9 +57,11 @@ struct SceneOptions {
     std::optional<double> stiffness_n_mm, radius_mm;
     double fit_mm = 0, crease_deg = 60, split_mm = 0;
     std::string prepare = "full";
+    bool use_cache = true;
 
     void add(CLI::App& app);
     /// The preparation alone: --unit, --fit, --crease, --prepare, --split.
+    /// Whoever calls only this prepares anew every time.
     void add_preparation(CLI::App& app);
     [[nodiscard]] scene::LoadOptions load_options() const;
     /// The same as command line words, for a program that takes over.
@@ -66,7 +70,7 @@ struct SceneOptions {
 
 /// Reads a scene with a progress bar, warnings of the preparation on stderr.
 Result<scene::Scene> load_scene(const SceneOptions& options);
-/// Warnings of every object's preparation on stderr.
+/// Warnings of every object's preparation and what went wrong beside it, on stderr.
 void print_warnings(const scene::Scene& scene);
 
 /// --model, --steps, --combine, --proxy, --arith.
@@ -84,6 +88,14 @@ struct BudgetOptions {
 
     void add(CLI::App& app, bool allow_all);
     void apply(feeder::FeederOptions& options) const;
+};
+
+/// --levels auto|off|N.
+struct LevelsOption {
+    std::string word; ///< empty: not given
+
+    void add(CLI::App& app, const char* otherwise);
+    [[nodiscard]] std::optional<scene::LevelWish> wish() const;
 };
 
 /// --device: NODE of the kernel's device, empty for the first there is.

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fdhctl/command_line.hpp"
+#include "fdhctl/level_report.hpp"
 #include "fdhctl/mesh_report.hpp"
 #include "feeder/servo_choice.hpp"
 #include "study/tick_cost.hpp"
@@ -20,8 +21,17 @@ namespace {
 /// The budget that the prediction is for: the feeder's own.
 constexpr std::uint32_t budget = feeder::FeederOptions{}.budget;
 
+struct Options {
+    SceneOptions scene;
+    LevelsOption levels;
+    double feed_rate_hz = feeder::FeederOptions{}.rate_hz;
+    bool json = false;
+};
+
 struct Facts {
     scene::Scene scene;
+    scene::Levels levels; ///< only the scene's own when they are off
+    FeedPace pace;
     double build_ms = 0;
     std::size_t tree_bytes = 0;
     std::uint32_t rate_hz = 0;
@@ -29,9 +39,25 @@ struct Facts {
     study::TickCost cost;
 };
 
-Result<Facts> gather(const SceneOptions& options)
+/// As a session would have them; always what sets of the scene itself cover.
+scene::Levels levels_of(const scene::Scene& scene, const fdh::SceneTree<14>& tree, const Options& options)
 {
-    Result<scene::Scene> scene = load_scene(options);
+    const auto wish = options.levels.wish();
+    if (!(wish ? wish->on : scene.levels.value_or(true))) {
+        scene::Levels off;
+        off.finest = scene::measure_coverage(scene, tree, budget);
+        return off;
+    }
+    scene::LevelOptions wanted;
+    wanted.budget = budget;
+    wanted.delay_s = std::max(scene::slow_feed_s, 1.0 / options.feed_rate_hz);
+    wanted.edge_max_mm = feeder::edge_max_mm({});
+    return scene::build_levels(scene, tree, wanted);
+}
+
+Result<Facts> gather(const Options& options)
+{
+    Result<scene::Scene> scene = load_scene(options.scene);
     if (!scene)
         return scene.error();
     Facts facts;
@@ -43,6 +69,8 @@ Result<Facts> gather(const SceneOptions& options)
     facts.build_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     facts.tree_bytes = tree.bytes();
+    facts.levels = levels_of(facts.scene, tree, options);
+    facts.pace = {options.feed_rate_hz, facts.scene.max_radius_mm()};
     const Result<std::uint32_t> rate = feeder::choose_rate({}, facts.scene.servo);
     if (!rate)
         return rate.error();
@@ -101,7 +129,9 @@ nlohmann::json json_of(const Facts& facts)
           {"median_ns", facts.cost.tick_ns.median},
           {"p99_ns", facts.cost.tick_ns.p99},
           {"period_percent", facts.cost.tick_ns.median * 1e-7 * facts.rate_hz}}},
-        {"tree", {{"build_ms", facts.build_ms}, {"bytes", facts.tree_bytes}}}};
+        {"tree", {{"build_ms", facts.build_ms}, {"bytes", facts.tree_bytes}}},
+        {"coverage", coverage_json(facts.levels.finest, facts.pace)},
+        {"levels", levels_json(scene, facts.levels, facts.pace)}};
 }
 
 std::string joined(const std::vector<std::string>& words)
@@ -149,6 +179,8 @@ std::string text_of(const Facts& facts)
                        "; not called for, and costing nothing: " + joined(scene.effects_not_called_for()));
     add("hierarchy", fmt::format("FDH14, {:.1f} MB, built in {:.0f} ms",
                                  static_cast<double>(facts.tree_bytes) * 1e-6, facts.build_ms));
+    add("coverage", coverage_text(facts.levels.finest, facts.pace));
+    text += levels_text(scene, facts.levels, facts.pace);
     add("model", device::model_text(facts.model));
     add("tick",
         fmt::format(
@@ -164,17 +196,19 @@ std::string text_of(const Facts& facts)
 
 Run add_info(CLI::App& app)
 {
-    struct Options {
-        SceneOptions scene;
-        bool json = false;
-    };
     auto options = std::make_shared<Options>();
     options->scene.add(app);
+    options->levels.add(app, "auto, or the scene's");
+    add_feed_rate(app, options->feed_rate_hz, "sets per second that speeds are reckoned with");
     app.add_flag("--json", options->json, "as one line of JSON");
     return [options] {
-        const Result<Facts> facts = gather(options->scene);
+        const Result<Facts> facts = gather(*options);
         if (!facts)
             return fail(facts.error());
+        const FeedPace& pace = facts->pace;
+        const scene::Levels& levels = facts->levels;
+        if (const auto warning = coverage_warning(levels.coverage(levels.size() - 1), pace))
+            std::fprintf(stderr, "fdhctl: warning: %s: %s\n", options->scene.scene.c_str(), warning->c_str());
         if (options->json)
             std::printf("%s\n", json_of(*facts).dump().c_str());
         else

@@ -14,6 +14,7 @@
 #include "fdhctl/background.hpp"
 #include "fdhctl/command_line.hpp"
 #include "fdhctl/end_signals.hpp"
+#include "fdhctl/level_report.hpp"
 #include "fdhctl/touch_record.hpp"
 #include "fdhctl/touch_summary.hpp"
 #include "fdhctl/view.hpp"
@@ -31,6 +32,7 @@ struct Options {
     SceneOptions scene;
     ServoOptions servo;
     BudgetOptions budget;
+    LevelsOption levels;
     bool view = false, detach = false, usermode = false, json = false;
     std::string path, record, summary, node;
     double seconds = 0; ///< 0: until somebody stops it
@@ -79,6 +81,7 @@ feeder::SessionOptions session_options(const Options& options, const feeder::Pat
     session.force_usermode = options.usermode;
     session.node = options.node;
     session.servo = options.servo.words;
+    session.levels = options.levels.wish();
     session.start.crossfade_ms = options.crossfade_ms;
     session.cpu = options.cpu;
     if (!path.empty())
@@ -237,10 +240,8 @@ Run add_load(CLI::App& app)
         ->type_name("HZ");
     options->servo.add(app);
     options->budget.add(app, false);
-    app.add_option("--feed-rate", options->feed_rate_hz, "sets per second at rest; more when the tip asks")
-        ->check(CLI::Range(20.0, 2000.0))
-        ->type_name("HZ")
-        ->capture_default_str();
+    options->levels.add(app, "auto, or the scene's; built while it is touched");
+    add_feed_rate(app, options->feed_rate_hz, "sets per second at rest; more when the tip asks");
     app.add_option("--crossfade", options->crossfade_ms,
                    "to another level of detail or revision of an object [20, or the scene's]")
         ->check(CLI::Range(1, PHANTOM_RAMP_MAX_MS))

@@ -21,6 +21,7 @@ constexpr Command commands[] = {
     {"stop", "ramp down and end what runs", add_stop},
     {"info", "triangles, defects, effects and predicted cost of a scene", add_info},
     {"prepare", "the preprocessing alone, with its report", add_prepare},
+    {"cache", "list, check and prune the prepared meshes that are kept", add_cache},
     {"stroke", "make a path over a scene's surface for the simulated device", add_stroke},
     {"trace", "the module's code on a virtual clock, one tick per row of a path", add_trace},
     {"record", "write down the ticks of a device that somebody else feeds", add_record},

@@ -9,6 +9,7 @@
 
 #include "base/progress_bar.hpp"
 #include "fdhctl/command_line.hpp"
+#include "fdhctl/level_report.hpp"
 #include "fdhctl/mesh_report.hpp"
 
 namespace phantom::fdhctl {
@@ -18,6 +19,7 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::string output;
+    double feed_rate_hz = feeder::FeederOptions{}.rate_hz;
     bool json = false;
 };
 
@@ -31,10 +33,19 @@ int run(const Options& options)
     const scene::Object& object = scene->objects.front();
     if (Status status = mesh::write_ply(object.mesh, options.output); !status)
         return fail(status.error());
-    if (options.json)
-        std::printf("%s\n", report_json(object.report).dump().c_str());
-    else
-        std::printf("%swritten to  %s\n", report_text(object.report).c_str(), options.output.c_str());
+    const scene::Coverage coverage =
+        scene::measure_coverage(*scene, scene::build_tree<14>(*scene), feeder::FeederOptions{}.budget);
+    const FeedPace pace{options.feed_rate_hz, scene->max_radius_mm()};
+    if (const auto warning = coverage_warning(coverage, pace))
+        std::fprintf(stderr, "fdhctl: warning: %s: %s\n", options.scene.scene.c_str(), warning->c_str());
+    if (options.json) {
+        nlohmann::json report = report_json(object.report);
+        report["coverage"] = coverage_json(coverage, pace);
+        std::printf("%s\n", report.dump().c_str());
+    } else {
+        std::printf("%scoverage    %s\nwritten to  %s\n", report_text(object.report).c_str(),
+                    coverage_text(coverage, pace).c_str(), options.output.c_str());
+    }
     return exit_success;
 }
 
@@ -43,11 +54,15 @@ int run(const Options& options)
 Run add_prepare(CLI::App& app)
 {
     auto options = std::make_shared<Options>();
-    app.add_option("mesh", options->scene.scene, "PLY, OBJ, STL or OFF")->required()->type_name("MESH");
+    options->scene.use_cache = false;
+    app.add_option("mesh", options->scene.scene, "PLY, OBJ, STL, OFF, VTP, VTK, 3DS or glTF")
+        ->required()
+        ->type_name("MESH");
     app.add_option("-o,--output", options->output, "binary PLY in mm with vertex normals")
         ->required()
         ->type_name("OUT.ply");
     options->scene.add_preparation(app);
+    add_feed_rate(app, options->feed_rate_hz, "sets per second that the tip's speed is reckoned with");
     app.add_flag("--json", options->json, "the report as one line of JSON");
     return [options] { return run(*options); };
 }

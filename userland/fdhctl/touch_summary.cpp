@@ -50,7 +50,9 @@ void TouchSummary::take(feeder::Session& session, double seconds)
                {{"sets", fed.sets},
                 {"sets_per_s", seconds > 0 ? static_cast<double>(fed.sets) / seconds : 0.0},
                 {"query_us", percentiles(fed.query_us)},
-                {"interval_ms", percentiles(fed.interval_ms)}}},
+                {"interval_ms", percentiles(fed.interval_ms)},
+                {"level_sets", fed.level_sets},
+                {"level_changes", fed.level_changes}}},
               {"servo", feeder::status_json(session.device().status())}};
 }
 
@@ -91,6 +93,14 @@ std::string TouchSummary::text() const
     add("feeder", fmt::format("{} sets, {:.0f} per s, {} apart, query {}",
                               feeder["sets"].get<std::uint64_t>(), number(feeder["sets_per_s"]),
                               three(feeder["interval_ms"], "ms"), three(feeder["query_us"], "us")));
+    if (feeder["level_sets"].size() > 1) {
+        std::string sets;
+        for (const nlohmann::json& count : feeder["level_sets"])
+            sets += fmt::format("{}{}", sets.empty() ? "" : " / ", count.get<std::uint64_t>());
+        add("levels",
+            fmt::format("{} sets of level 0 ... {}, {} changes", sets, feeder["level_sets"].size() - 1,
+                        feeder["level_changes"].get<std::uint64_t>()));
+    }
     const nlohmann::json& load = facts_["load_ms"];
     add("load",
         fmt::format("first force after {:.0f} ms: read and prepared {:.0f}, hierarchy {:.0f}",

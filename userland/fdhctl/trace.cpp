@@ -20,6 +20,7 @@ struct Options {
     SceneOptions scene;
     ServoOptions servo;
     BudgetOptions budget;
+    LevelsOption levels;
     std::string path, output, limits = "off", isa = "best";
     std::uint32_t feed_every = 1;
     bool verbose = false, json = false;
@@ -35,6 +36,9 @@ nlohmann::json summary_json(const study::TraceSummary& sum)
             {"uncovered_ticks", sum.uncovered_ticks},
             {"sets", sum.sets},
             {"patches_max", sum.patches_max},
+            {"level_sets", sum.level_sets},
+            {"level_changes", sum.level_changes},
+            {"level_error_mm", sum.level_error_mm},
             {"refused", sum.refused},
             {"saturated", sum.saturated},
             {"force_max_n", sum.force_max_n},
@@ -89,6 +93,8 @@ int run(const Options& options)
     trace.servo = options.servo.words;
     options.budget.apply(trace.feeder);
     trace.feed_every = options.feed_every;
+    if (const auto wish = options.levels.wish())
+        trace.levels = *wish;
     trace.limits = options.limits == "on";
     trace.isa = isa_number(options.isa);
     Result<study::TraceRun> result = [&] {
@@ -123,6 +129,7 @@ Run add_trace(CLI::App& app)
         ->type_name("T.csv");
     options->servo.add(app);
     options->budget.add(app, true);
+    options->levels.add(app, "off");
     app.add_option("--feed-every", options->feed_every, "query before every K-th tick")
         ->check(CLI::Range(1U, 1000000000U))
         ->type_name("K")

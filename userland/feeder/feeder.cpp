@@ -7,6 +7,10 @@
 // with R the largest contact radius of the scene and `way` how far the tip may go until the next set is
 // there: as far as it came since the last one. The tip of the round before must be covered as well: the
 // servo looks for crossings on the path from there to here.
+//
+// Where the scene has levels of detail, that need decides on the level first (level_choice.hpp), by the speed
+// that the status page knows and the time between two rounds. The budget grows only where the level's
+// triangles are smaller than elsewhere.
 #include "feeder/feeder.hpp"
 
 #include <algorithm>
@@ -14,6 +18,10 @@
 #include <cmath>
 #include <mutex>
 #include <thread>
+#include <utility>
+
+#include "base/vector.hpp"
+#include "feeder/level_choice.hpp"
 
 namespace phantom::feeder {
 
@@ -39,7 +47,7 @@ constexpr double margin_of_radius = 0.05;
 
 double distance(const Vector& a, const Vector& b)
 {
-    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    return length(a - b);
 }
 
 double microseconds(Clock::duration d)
@@ -62,19 +70,30 @@ struct Samples {
     }
 };
 
+/// What a level of detail is fed from.
+struct Detail {
+    Detail(const scene::Scene& scene, const fdh::SceneTree<14>& tree_, std::uint32_t patches_max)
+        : tree(tree_), builder(scene, patches_max)
+    {
+    }
+    const fdh::SceneTree<14>& tree;
+    SetBuilder builder;
+    std::uint32_t error_nm = 0;
+};
+
 } // namespace
 
 struct Feeder::Impl {
     Impl(const scene::Scene& scene_, const fdh::SceneTree<14>& tree_, device::Device& device_,
          const FeederOptions& options_)
         : scene(scene_),
-          tree(tree_),
           device(device_),
           options(options_),
-          builder(scene_, device_.info().patches_max),
           radius_mm(scene_.max_radius_mm()),
-          budget(first_budget())
+          budget(first_budget()),
+          choice(std::vector<DetailLevel>(1))
     {
+        details.push_back(std::make_unique<Detail>(scene_, tree_, device_.info().patches_max));
     }
 
     /// Options as wide as the module allows; user mode may raise patches_max.
@@ -85,6 +104,59 @@ struct Feeder::Impl {
         return options.grow_budget
                    ? std::max(first_budget(), std::min<std::uint32_t>(PHANTOM_PATCHES_MAX, budget_max()))
                    : first_budget();
+    }
+
+    /// Takes what use() was given, if anything.
+    void take_levels()
+    {
+        std::shared_ptr<const scene::Levels> given;
+        {
+            const std::lock_guard lock(mutex);
+            given = std::move(offered);
+        }
+        if (!given)
+            return;
+        details.resize(1);
+        for (const scene::Level& level : given->coarser) {
+            details.push_back(std::make_unique<Detail>(level.scene, level.tree, device.info().patches_max));
+            details.back()->error_nm =
+                static_cast<std::uint32_t>(std::clamp(level.error_mm / mm_per_nm, 0.0, 4e9));
+        }
+        choice = LevelChoice(details_of(*given));
+        levels = std::move(given); // its scenes and trees live as long as the details
+    }
+
+    /// The time until the next set: the period, or as long as it took last time.
+    double delay_s(const phantom_status& status) const
+    {
+        const double period_s = 1.0 / std::max(1.0, options.rate_hz);
+        return previous_ns ? std::max(period_s, 1e-9 * static_cast<double>(status.time_ns - previous_ns))
+                           : period_s;
+    }
+
+    /// The level for this round.
+    std::uint32_t choose_level(const Vector& tip, const Vector& proxy, bool inside)
+    {
+        take_levels();
+        if (details.size() == 1)
+            return 0;
+        if (options.level)
+            return std::min(*options.level, static_cast<std::uint32_t>(details.size() - 1));
+        const phantom_status status = device.status();
+        Vector velocity{};
+        for (int axis = 0; axis < 3; ++axis)
+            velocity[axis] = static_cast<double>(status.velocity_nm_s[axis]) * mm_per_nm;
+        LevelDemand demand;
+        demand.speed_mm_s = length(velocity);
+        demand.delay_s = delay_s(status);
+        demand.contact_radius_mm = radius_mm;
+        if (inside) {
+            const Vector deep = tip - proxy;
+            demand.depth_mm = length(deep);
+            demand.dive_mm_s = dot(velocity, unit(deep));
+        }
+        previous_ns = status.time_ns;
+        return static_cast<std::uint32_t>(choice.choose(demand));
     }
 
     struct Wanted {
@@ -107,7 +179,7 @@ struct Feeder::Impl {
     }
 
     /// The nearest triangles, as many as the need asks for.
-    void query(const Wanted& want)
+    void query(const Wanted& want, const fdh::SceneTree<14>& tree)
     {
         // Twice search_radius is what check_reach() leaves room for.
         const double search_mm =
@@ -145,6 +217,9 @@ struct Feeder::Impl {
     {
         const std::lock_guard lock(mutex);
         ++totals.sets;
+        totals.level_sets.resize(std::max(totals.level_sets.size(), details.size()));
+        ++totals.level_sets[report.level];
+        totals.level_changes += report.level != last.level;
         query_us.add(report.query_us);
         query_times[report.set_id % query_times_max] = {report.set_id, report.query_us};
         if (last_time != Clock::time_point{})
@@ -154,18 +229,21 @@ struct Feeder::Impl {
     }
 
     const scene::Scene& scene;
-    const fdh::SceneTree<14>& tree;
     device::Device& device;
     FeederOptions options;
-    SetBuilder builder;
     double radius_mm;
     std::uint32_t budget; ///< of the next query; grows and shrinks
-    Vector previous{};    ///< tip of the round before
+    LevelChoice choice;
+    std::vector<std::unique_ptr<Detail>> details; ///< by level, at least the scene itself
+    std::shared_ptr<const scene::Levels> levels;  ///< what the coarser details are of
+    Vector previous{};                            ///< tip of the round before
     bool has_previous = false;
+    std::uint64_t previous_ns = 0; ///< time of the status that the last level was chosen by, or 0
     fdh::Nearest nearest;
     device::PatchSet set;
 
     mutable std::mutex mutex; ///< protects what follows
+    std::shared_ptr<const scene::Levels> offered;
     Totals totals;
     Samples query_us, interval_ms;
     struct QueryTime {
@@ -183,6 +261,12 @@ Feeder::Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device
 {
 }
 
+void Feeder::use(std::shared_ptr<const scene::Levels> levels)
+{
+    const std::lock_guard lock(impl_->mutex);
+    impl_->offered = std::move(levels);
+}
+
 Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::array<double, 3>& proxy_mm,
                                 bool inside)
 {
@@ -195,17 +279,18 @@ Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::
         Vector middle{};
         for (int axis = 0; axis < 3; ++axis)
             middle[axis] = 0.5 * (bounds.low[axis] + bounds.high[axis]);
-        self.builder.build_all(middle, self.set);
+        self.details.front()->builder.build_all(middle, self.set);
     } else {
+        report.level = self.choose_level(tip_mm, proxy_mm, inside);
+        Detail& detail = *self.details[report.level];
         const Impl::Wanted want = self.wanted(tip_mm, proxy_mm, inside);
-        self.query(want);
+        self.query(want, detail.tree);
         queried = Clock::now();
-        self.builder.build(self.nearest.hits, want.centre, self.nearest.coverage, self.set);
+        detail.builder.build(self.nearest.hits, want.centre, self.nearest.coverage, self.set);
         report.hits = self.nearest.hits;
+        self.set.header.level = report.level;
+        self.set.header.level_error_nm = detail.error_nm;
     }
-    self.set.header.level = self.options.level;
-    self.set.header.level_error_nm =
-        static_cast<std::uint32_t>(std::clamp(self.options.level_error_mm / mm_per_nm, 0.0, 4e9));
     const auto built = Clock::now();
     report.patches = static_cast<std::uint32_t>(self.set.patches.size());
     report.coverage_mm = self.set.header.radius_nm * mm_per_nm;

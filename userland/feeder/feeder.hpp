@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "device/device.hpp"
 #include "fdh/scene_tree.hpp"
+#include "scene/levels.hpp"
 #include "scene/scene.hpp"
 
 namespace phantom::feeder {
@@ -19,8 +21,8 @@ struct FeederOptions {
     bool all = false;          ///< one set with every triangle of the scene; user mode only
     /// Double the budget (to PHANTOM_PATCHES_MAX) while the set does not cover R and the way to the next.
     bool grow_budget = true;
-    std::uint32_t level = 0; ///< of detail that the scene is; 0 is the mesh itself
-    double level_error_mm = 0;
+    /// Of detail, where there are several (use()): that, or the coarsest. Else it is chosen by speed.
+    std::optional<std::uint32_t> level{};
     double search_radius_mm = 50.0; ///< no triangle farther than this is looked for
     double rate_hz = 250.0;         ///< of run()
 };
@@ -29,6 +31,7 @@ struct FeederOptions {
 struct FeedReport {
     std::uint64_t set_id = 0; ///< 0: every slot of the servo was in use, the set before stays
     std::uint32_t patches = 0;
+    std::uint32_t level = 0; ///< of detail; hits are of its scene
     double coverage_mm = 0;
     double query_us = 0; ///< hull query alone
     double build_us = 0; ///< query to the set's last byte
@@ -84,15 +87,22 @@ class SetBuilder {
     std::vector<std::size_t> rims_from_;                 ///< scratch: how many more with so many hits
 };
 
+/// The longest edge that sets can carry: no triangle may reach farther from the tip than their coordinates.
+double edge_max_mm(const FeederOptions& options);
+
 /// Whether sets can carry this scene: no triangle may reach farther from the tip than a set's coordinates
 /// (1 m) go, and with `all` the whole scene must lie within them.
 Status check_reach(const scene::Scene& scene, const FeederOptions& options);
 
-/// One feeder per device. Not thread-safe but for totals(), last() and query_us().
+/// One feeder per device. Not thread-safe but for use(), totals(), last() and query_us().
 class Feeder {
   public:
     Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device::Device& device,
            const FeederOptions& options);
+
+    /// From the next round on the scene's levels of detail are there to choose from (level_choice.hpp), by
+    /// the speed on the status page. A set says which it is of, and the servo fades from one to the other.
+    void use(std::shared_ptr<const scene::Levels> levels);
 
     /// Queries round the tip (inside: round the middle of tip and proxy) and submits one set. The set also
     /// covers the tip of the round before, so that the servo sees what the path between them crosses.
@@ -105,6 +115,8 @@ class Feeder {
 
     struct Totals {
         std::uint64_t sets = 0;
+        std::vector<std::uint64_t> level_sets;    ///< of these: of each level
+        std::uint64_t level_changes = 0;          ///< sets of another level than the one before
         std::vector<float> query_us, interval_ms; ///< the last 65536 of each
     };
     [[nodiscard]] Totals totals() const;

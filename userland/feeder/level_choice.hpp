@@ -15,22 +15,24 @@
 //                                              reach^2 >= way^2 + depth * dive
 //
 // On a round surface the proxy goes faster than the tip under it, by radius / (radius - depth), and hands
-// speed up: `way` is taken larger than it is by LevelChoice::way_margin.
+// speed up: `way` is taken larger than it is by scene::way_margin.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include "fdh/tree.hpp"
-#include "mesh/mesh.hpp"
+#include "scene/coverage.hpp"
+#include "scene/levels.hpp"
 
 namespace phantom::feeder {
 
 struct DetailLevel {
-    double reach_mm = 0; ///< as measure_reach_mm() finds it
+    double reach_mm = 0; ///< what a set covers at 99 of 100 points of the surface
     double error_mm = 0; ///< how far the level lies from the mesh
 };
+
+/// Of a scene's levels, finest first.
+std::vector<DetailLevel> details_of(const scene::Levels& levels);
 
 /// What the tip does.
 struct LevelDemand {
@@ -46,7 +48,7 @@ double reach_needed_mm(const LevelDemand& demand);
 
 class LevelChoice {
   public:
-    static constexpr double way_margin = 1.5;
+    static constexpr double way_margin = scene::way_margin;
     /// A finer level is taken only where it would do for a demand that much larger: a tip whose speed wavers
     /// stays on one level.
     static constexpr double finer_margin = 1.25;
@@ -67,9 +69,5 @@ class LevelChoice {
     std::size_t finer_ = 0;  ///< the level that would have done for all of the last sets,
     unsigned finer_for_ = 0; ///< as many as these
 };
-
-/// How far round a point of the surface the `budget` nearest triangles are all there are: what 99 of 100
-/// vertices have at least. The tree is the mesh's.
-double measure_reach_mm(const mesh::Mesh& mesh, const fdh::TriangleTree<14>& tree, std::uint32_t budget);
 
 } // namespace phantom::feeder

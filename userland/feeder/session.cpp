@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "feeder/session.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -34,6 +35,9 @@ constexpr std::uint32_t usermode_stall_us = 1'000'000;
 
 /// STOP ramps for start.ramp_ms (default 250 ms); what is waited for beyond that.
 constexpr std::chrono::milliseconds stop_patience{2000};
+
+/// Of the thread that builds levels: whatever touches goes first.
+constexpr int simplifying_niceness = 19;
 
 /// How far above the scene a simulated tip rests, beyond the contact radius.
 constexpr double rest_height_mm = 10.0;
@@ -92,9 +96,11 @@ struct Session::Impl {
     Timings timings;
     bool started = false;
     std::atomic<bool> stop_requested{false};
-    mutable std::mutex mutex; ///< protects failure and model
+    mutable std::mutex mutex; ///< protects failure, levels and model
     std::optional<Error> failure;
+    std::shared_ptr<const scene::Levels> levels; ///< set once; protected by mutex
     std::jthread feeding;
+    std::jthread simplifying;              ///< builds levels
     std::optional<control::Server> server; ///< last: its thread uses all of the above
 
     void say(const std::string& line) const
@@ -109,17 +115,61 @@ struct Session::Impl {
         if (!loaded)
             return loaded.error();
         scene = std::move(*loaded);
-        timings.read_prepare_ms = milliseconds_since(opened);
+        timings.read_prepare_ms = milliseconds_since(opened) - scene.hulls_ms;
         const auto begin = Clock::now();
         tree.emplace(scene::build_tree<14>(scene));
-        timings.build_ms = milliseconds_since(begin);
+        timings.build_ms = milliseconds_since(begin) + scene.hulls_ms;
         const mesh::Bounds bounds = scene.bounds();
-        say(fmt::format("{}: {} triangles, {:.1f} x {:.1f} x {:.1f} mm, read and prepared in {:.0f} ms, "
+        const bool cached = std::all_of(scene.objects.begin(), scene.objects.end(),
+                                        [](const scene::Object& object) { return object.from_cache; });
+        say(fmt::format("{}: {} triangles, {:.1f} x {:.1f} x {:.1f} mm, {} in {:.0f} ms, "
                         "FDH14 hierarchy in {:.0f} ms",
                         options.scene.filename().string(), scene.triangles(), bounds.high[0] - bounds.low[0],
                         bounds.high[1] - bounds.low[1], bounds.high[2] - bounds.low[2],
-                        timings.read_prepare_ms, timings.build_ms));
+                        cached ? "from the cache" : "read and prepared", timings.read_prepare_ms,
+                        timings.build_ms));
         return check_reach(scene, options.feeder);
+    }
+
+    scene::LevelWish level_wish() const
+    {
+        return options.levels.value_or(scene::LevelWish{.on = scene.levels.value_or(true)});
+    }
+
+    /// What the levels shall last for: the feeder's own pace, if that is slower than what is promised for.
+    scene::LevelOptions level_options() const
+    {
+        scene::LevelOptions out;
+        out.budget = options.feeder.budget;
+        out.delay_s = std::max(scene::slow_feed_s, 1.0 / options.feeder.rate_hz);
+        out.edge_max_mm = edge_max_mm(options.feeder);
+        return out;
+    }
+
+    void build_levels(const scene::LevelOptions& wanted)
+    {
+        auto built = std::make_shared<const scene::Levels>(scene::build_levels(scene, *tree, wanted));
+        {
+            const std::lock_guard guard(mutex);
+            levels = built;
+        }
+        if (built->size() > 1)
+            feeder->use(std::move(built));
+    }
+
+    /// A level that was asked for is there from the first set on; else none is waited for.
+    void begin_levels()
+    {
+        const scene::LevelWish wish = level_wish();
+        if (!wish.on || options.feeder.all || wish.fixed)
+            return;
+        simplifying = std::jthread([this](const std::stop_token& stop) {
+            // On Linux of this thread, and of those that it starts. Refused or not, it goes on.
+            (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), simplifying_niceness);
+            scene::LevelOptions wanted = level_options();
+            wanted.cancelled = [&stop] { return stop.stop_requested(); };
+            build_levels(wanted);
+        });
     }
 
     Status open_servo()
@@ -148,7 +198,12 @@ struct Session::Impl {
         model = *chosen;
         if (Status status = device->set_model(model); !status)
             return status;
-        feeder.emplace(scene, *tree, *device, options.feeder);
+        const scene::LevelWish wish = level_wish();
+        FeederOptions feeding_options = options.feeder;
+        feeding_options.level = wish.fixed;
+        feeder.emplace(scene, *tree, *device, feeding_options);
+        if (wish.fixed && !options.feeder.all)
+            build_levels(level_options());
         return success();
     }
 
@@ -199,6 +254,7 @@ struct Session::Impl {
     {
         server.reset();
         Status result = success();
+        simplifying.request_stop();
         if (started && device) {
             result = device->stop();
             const auto begin = Clock::now();
@@ -207,6 +263,8 @@ struct Session::Impl {
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
             started = false;
         }
+        if (simplifying.joinable())
+            simplifying.join();
         if (feeding.joinable()) {
             feeding.request_stop();
             feeding.join();
@@ -226,6 +284,11 @@ struct Session::Impl {
         answer["scene"] = options.scene.string();
         answer["triangles"] = scene.triangles();
         const FeedReport last = feeder->last();
+        const std::size_t count = [this] {
+            const std::lock_guard guard(mutex);
+            return levels ? levels->size() : 1;
+        }();
+        answer["levels"] = count;
         answer["feeder"] = {{"patches", last.patches},
                             {"coverage_mm", last.coverage_mm},
                             {"query_us", last.query_us},
@@ -328,6 +391,7 @@ Status Session::start()
     if (Status status = impl_->first_force(); !status)
         return status;
     impl_->begin_feeding();
+    impl_->begin_levels();
     if (impl_->options.control_socket) {
         Impl* impl = impl_.get();
         Result<control::Server> server =
@@ -368,6 +432,18 @@ const scene::Scene& Session::scene() const
 const fdh::SceneTree<14>& Session::tree() const
 {
     return *impl_->tree;
+}
+
+std::shared_ptr<const scene::Levels> Session::levels() const
+{
+    const std::lock_guard guard(impl_->mutex);
+    return impl_->levels;
+}
+
+const scene::Scene& Session::scene_of(std::uint32_t level) const
+{
+    const auto levels = this->levels(); // once they are there they stay
+    return level > 0 && levels && level < levels->size() ? levels->coarser[level - 1].scene : impl_->scene;
 }
 
 device::Device& Session::device()

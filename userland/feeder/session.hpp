@@ -23,8 +23,9 @@ struct SessionOptions {
     std::string node{};                   ///< the kernel's device, that or none; else the first that opens
     std::optional<std::uint32_t> rate_hz; ///< else the scene's [servo] rate, else 1000
     std::optional<phantom_model> model;   ///< else what `servo` and the scene's [servo] say
-    scene::ServoSettings servo{};         ///< word by word over the scene's [servo]
-    int cpu = -1;                         ///< user mode: pin the servo to that CPU
+    std::optional<scene::LevelWish> levels{}; ///< else the scene's, else where an object needs them
+    scene::ServoSettings servo{};             ///< word by word over the scene's [servo]
+    int cpu = -1;                             ///< user mode: pin the servo to that CPU
     /// Where the simulated tip begins; else above the scene, out of reach of its surface.
     std::optional<std::array<double, 3>> start_tip_mm{};
     phantom_start start{};                         ///< zero fields: the scene's, else the module's defaults
@@ -41,7 +42,8 @@ class Session {
     Session& operator=(Session&&) noexcept;
     ~Session(); ///< stop()
 
-    /// Feeds a first set, starts the servo (force ramps up), the feeder thread and the control socket.
+    /// Feeds a first set, starts the servo (force ramps up), the feeder thread and the control socket. Levels
+    /// of detail are built meanwhile by a thread of low priority: the feeder takes them when they are there.
     Status start();
     /// Ramps the force down, stops servo and threads. Idempotent.
     Status stop();
@@ -53,6 +55,10 @@ class Session {
 
     [[nodiscard]] const scene::Scene& scene() const;
     [[nodiscard]] const fdh::SceneTree<14>& tree() const;
+    /// Nothing as long as there are none.
+    [[nodiscard]] std::shared_ptr<const scene::Levels> levels() const;
+    /// What the feeder's hits of that level are of.
+    [[nodiscard]] const scene::Scene& scene_of(std::uint32_t level) const;
     [[nodiscard]] device::Device& device();
     [[nodiscard]] Feeder& feeder();
     /// Where the time from open() to the first force went, in ms.

@@ -352,6 +352,13 @@ void SetBuilder::build_all(const std::array<double, 3>& centre_mm, device::Patch
     out.header.radius_nm = complete ? std::numeric_limits<__u32>::max() : 0;
 }
 
+double edge_max_mm(const FeederOptions& options)
+{
+    // The tip is at most search_radius from a triangle of its set, and the origin is the tip or between tip
+    // and proxy.
+    return PHANTOM_COORDINATE_MAX_NM / nm_per_mm - 2.0 * options.search_radius_mm;
+}
+
 Status check_reach(const scene::Scene& scene, const FeederOptions& options)
 {
     constexpr double reach_mm = PHANTOM_COORDINATE_MAX_NM / nm_per_mm;
@@ -371,21 +378,22 @@ Status check_reach(const scene::Scene& scene, const FeederOptions& options)
                          "take a smaller budget than all"};
         return success();
     }
-    // The tip is at most search_radius from a triangle of its set, and the origin is the tip or between tip
-    // and proxy.
-    const double edge_max_mm = reach_mm - 2.0 * options.search_radius_mm;
+    const double longest_mm = edge_max_mm(options);
     for (const scene::Object& object : scene.objects) {
+        // A hundredth for the rounding of what the report says.
+        if (object.report.edge_max_mm > 0 && object.report.edge_max_mm < 0.99 * longest_mm)
+            continue;
         for (std::size_t face = 0; face < object.mesh.faces.size(); ++face) {
             const mesh::Triple& corners = object.mesh.faces[face];
             for (int edge = 0; edge < 3; ++edge) {
                 const Vector& a = object.mesh.vertices[corners[edge]];
                 const Vector& b = object.mesh.vertices[corners[(edge + 1) % 3]];
                 const double edge_mm = length({b[0] - a[0], b[1] - a[1], b[2] - a[2]});
-                if (edge_mm > edge_max_mm)
+                if (edge_mm > longest_mm)
                     return Error{
                         fmt::format("{}: object {}, face {}", file, object.name, face),
                         fmt::format("an edge is {:.0f} mm long, a set reaches {:.0f} mm from the tip",
-                                    edge_mm, edge_max_mm),
+                                    edge_mm, longest_mm),
                         "--split 500, or --unit or --fit if the mesh should be smaller"};
             }
         }

@@ -97,6 +97,8 @@ std::string status_line(const phantom_status& status)
         device::percentile_ns(status.duration, 0.99) * 1e-3, status.duration.max_ns * 1e-3,
         idle_percent(status), set_age_ms(status), status.set_patches, status.contacts,
         status.contacts == 1 ? "" : "s", force_n(status));
+    if (status.set_level)
+        line += fmt::format(" | level {}, {:.2g} mm off", status.set_level, status.set_level_error_nm * 1e-6);
     if (status.flags & PHANTOM_TICK_INSIDE)
         line += " | inside";
     if (status.flags & PHANTOM_TICK_UNCOVERED)
@@ -133,6 +135,12 @@ std::string status_text(const json& status)
     add("set", fmt::format("{} patches, {:.1f} ms old, {} sets taken, {} fades",
                            set["patches"].get<unsigned>(), set["age_ms"].get<double>(),
                            status["sets"].get<std::uint64_t>(), status["fades"].get<std::uint64_t>()));
+    if (status.contains("levels") || set["level"].get<unsigned>())
+        add("level", fmt::format("{}{}, {:.4g} mm from the mesh", set["level"].get<unsigned>(),
+                                 status.contains("levels")
+                                     ? fmt::format(" of 0 ... {}", status["levels"].get<unsigned>() - 1)
+                                     : "",
+                                 set["level_error_mm"].get<double>()));
     add("tip", vector(status["tip_mm"]) + " mm" + (status["inside"].get<bool>() ? ", inside" : "") +
                    (status["covered"].get<bool>() ? "" : ", not covered"));
     add("force", fmt::format("{} N, |F| {:.3f} N, {} contacts", vector(status["force_n"]),

@@ -15,12 +15,12 @@ namespace phantom::mesh {
 /// Half-edge 3 f + i goes from corner i of face f to corner i + 1.
 using HalfEdge = std::uint32_t;
 
-inline std::uint32_t from_vertex(const std::vector<Triple>& faces, HalfEdge half)
+inline std::uint32_t from_vertex(std::span<const Triple> faces, HalfEdge half)
 {
     return faces[half / 3][half % 3];
 }
 
-inline std::uint32_t to_vertex(const std::vector<Triple>& faces, HalfEdge half)
+inline std::uint32_t to_vertex(std::span<const Triple> faces, HalfEdge half)
 {
     return faces[half / 3][(half % 3 + 1) % 3];
 }
@@ -28,7 +28,7 @@ inline std::uint32_t to_vertex(const std::vector<Triple>& faces, HalfEdge half)
 class EdgeIndex {
   public:
     /// Holds as long as no face changes its corners. `vertices` is how many there are.
-    EdgeIndex(const std::vector<Triple>& faces, std::size_t vertices)
+    EdgeIndex(std::span<const Triple> faces, std::size_t vertices)
         : start_(vertices + 1, 0), entries_(3 * faces.size())
     {
         const auto halves = static_cast<HalfEdge>(entries_.size());

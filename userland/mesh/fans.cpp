@@ -218,7 +218,6 @@ bool degenerate(const Triple& face)
 
 Fans make_fans(const Mesh& mesh)
 {
-    Fans result;
     const auto count = static_cast<std::uint32_t>(mesh.faces.size());
     // A corner fan is its lowest face's, which may have no crease there itself.
     std::vector<bool> creased(mesh.vertices.size(), false);
@@ -232,23 +231,25 @@ Fans make_fans(const Mesh& mesh)
         }
     }
     if (!any)
-        return result;
-    result.first.reserve(count + 1U);
+        return {};
+    std::vector<Fan> fans;
+    std::vector<std::uint32_t> first;
+    first.reserve(count + 1U);
     for (std::uint32_t f = 0; f < count; ++f) {
-        result.first.push_back(static_cast<std::uint32_t>(result.fans.size()));
+        first.push_back(static_cast<std::uint32_t>(fans.size()));
         if (degenerate(mesh.faces[f]))
             continue;
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t a = mesh.faces[f][i], b = mesh.faces[f][(i + 1) % 3];
             const std::uint32_t other = mesh.neighbours[f][i];
             if (other != no_neighbour && f < other && (creased[a] || creased[b]))
-                add_edge_fans(mesh, {f, i}, result.fans);
+                add_edge_fans(mesh, {f, i}, fans);
             if (creased[a])
-                add_corner_fans(round_of(mesh, f, a), a, result.fans);
+                add_corner_fans(round_of(mesh, f, a), a, fans);
         }
     }
-    result.first.push_back(static_cast<std::uint32_t>(result.fans.size()));
-    return result;
+    first.push_back(static_cast<std::uint32_t>(fans.size()));
+    return {std::move(fans), std::move(first)};
 }
 
 } // namespace phantom::mesh

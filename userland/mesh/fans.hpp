@@ -12,7 +12,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "mesh/mesh.hpp"
 
@@ -23,14 +22,15 @@ struct Fan {
     Triple corners;              ///< vertices; over an edge two of them are equal, over a vertex all three
     std::array<Vec3, 3> normals; ///< unit, per corner
     [[nodiscard]] bool over_vertex() const { return corners[0] == corners[1] && corners[1] == corners[2]; }
+    bool operator==(const Fan&) const = default;
 };
 
 /// The fans of a mesh, each kept with one of the faces that it lies between: whoever is within some distance
 /// of the fan is within that distance of its face.
 struct Fans {
-    std::vector<Fan> fans; ///< by face
-    std::vector<std::uint32_t>
-        first; ///< of face f: fans first[f] ... first[f + 1] - 1; empty when there is none
+    SharedArray<Fan> fans; ///< by face
+    /// Of face f: fans first[f] ... first[f + 1] - 1; empty when there is none.
+    SharedArray<std::uint32_t> first;
 
     [[nodiscard]] std::span<const Fan> of(std::uint32_t face) const
     {

@@ -17,7 +17,7 @@ double Bounds::diagonal() const
     return distance(low, high);
 }
 
-Bounds bounds_of(const std::vector<Vec3>& vertices)
+Bounds bounds_of(std::span<const Vec3> vertices)
 {
     Bounds bounds;
     if (vertices.empty())

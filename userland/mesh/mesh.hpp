@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include "base/shared_array.hpp"
 
 namespace phantom::mesh {
 
@@ -13,22 +16,27 @@ using Triple = std::array<std::uint32_t, 3>;
 
 inline constexpr std::uint32_t no_neighbour = 0xffffffffU;
 
-/// What a file gave, before anything was done to it: triangles in file order (polygons fanned).
+/// What a file gave, before anything was done to it: triangles in file order (polygons cut).
 struct Soup {
     std::vector<Vec3> vertices;       ///< file units
     std::vector<Triple> faces;        ///< counter-clockwise, indices into vertices
     std::vector<Vec3> normals;        ///< unit normals the file gave; zero where they had no direction;
                                       ///< empty when it gave none
     std::vector<Triple> face_normals; ///< per face corner, indices into normals; empty with normals
+    /// Per face: its smoothing group, 0 for none; empty when the file has none. Faces of one group meet
+    /// smoothly however sharp their edge is, faces of two groups do not.
+    std::vector<std::uint32_t> smoothing{};
+    std::uint64_t polygons_crossed = 0; ///< polygons that cross themselves: their triangles overlap
 };
 
-/// A mesh ready to be touched. Unit normals per corner, so that a crease can keep two.
+/// A mesh ready to be touched. Unit normals per corner, so that a crease can keep two. A copy shares its
+/// arrays.
 struct Mesh {
-    std::vector<Vec3> vertices;       ///< mm
-    std::vector<Triple> faces;        ///< counter-clockwise seen from outside
-    std::vector<Vec3> normals;        ///< unit; with `--prepare none` zero where there is no direction
-    std::vector<Triple> face_normals; ///< per face corner, indices into normals
-    std::vector<Triple> neighbours;   ///< face over edge i (corner i to i+1), or no_neighbour
+    SharedArray<Vec3> vertices;       ///< mm
+    SharedArray<Triple> faces;        ///< counter-clockwise seen from outside
+    SharedArray<Vec3> normals;        ///< unit; with `--prepare none` zero where there is no direction
+    SharedArray<Triple> face_normals; ///< per face corner, indices into normals
+    SharedArray<Triple> neighbours;   ///< face over edge i (corner i to i+1), or no_neighbour
 };
 
 struct Bounds {
@@ -37,6 +45,6 @@ struct Bounds {
     [[nodiscard]] double extent() const;
     [[nodiscard]] double diagonal() const;
 };
-Bounds bounds_of(const std::vector<Vec3>& vertices);
+Bounds bounds_of(std::span<const Vec3> vertices);
 
 } // namespace phantom::mesh

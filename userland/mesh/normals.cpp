@@ -3,6 +3,7 @@
 // Vertex Normals from Polygonal Facets"): independent of how a flat part is cut into triangles.
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "mesh/groups.hpp"
 #include "mesh/steps.hpp"
@@ -15,6 +16,10 @@ namespace {
 /// A sum of unit normals shorter than this part of their summed weights has cancelled: what is left is
 /// rounding, and the corner takes its face's own normal.
 constexpr double cancelled = 1e-6;
+
+/// A normal of the file on the inner side of its face is taken the other way round when that is nearer to the
+/// computed one than this (cosine of 60 degrees): the file's faces or its normals were inside out.
+constexpr double turned_cosine = 0.5;
 
 std::vector<Vec3> face_normals_of(const Soup& soup)
 {
@@ -37,6 +42,14 @@ std::uint32_t corner_of(const Triple& face, std::uint32_t vertex)
     return face[0] == vertex ? 0 : face[1] == vertex ? 1 : 2;
 }
 
+/// Whether the smoothing groups of two neighbours make their edge a crease; nothing where one has none.
+std::optional<bool> parted_by_groups(const Soup& soup, std::uint32_t face, std::uint32_t other)
+{
+    if (soup.smoothing.empty() || soup.smoothing[face] == 0 || soup.smoothing[other] == 0)
+        return std::nullopt;
+    return soup.smoothing[face] != soup.smoothing[other];
+}
+
 /// Corners are numbered 3 f + i. Joins those on either end of every edge that is no crease.
 Groups group_corners(const Soup& soup, const std::vector<Triple>& neighbours,
                      const std::vector<Vec3>& face_normals, double crease_deg, Report& report)
@@ -49,7 +62,8 @@ Groups group_corners(const Soup& soup, const std::vector<Triple>& neighbours,
             const std::uint32_t other = neighbours[f][i];
             if (other == no_neighbour || other < f)
                 continue; // each edge once, from its lower face
-            if (dot(face_normals[f], face_normals[other]) < crease_cosine) {
+            const bool sharp = dot(face_normals[f], face_normals[other]) < crease_cosine;
+            if (parted_by_groups(soup, f, other).value_or(sharp)) {
                 ++report.crease_edges;
                 continue;
             }
@@ -87,7 +101,8 @@ void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double cr
     const bool from_file = !soup.face_normals.empty();
     std::vector<Vec3> normals;
     std::vector<Triple> face_normals(faces.size());
-    std::vector<std::uint32_t> file_number(soup.normals.size(), no_neighbour);
+    // of the file's normals, as they are and turned over
+    std::vector<std::uint32_t> file_number(soup.normals.size(), no_neighbour), turned_number;
     std::vector<std::uint32_t> group_number(sums.size(), no_neighbour);
     const auto numbered = [&normals](std::uint32_t& number, const Vec3& normal) {
         if (number == no_neighbour) {
@@ -112,6 +127,15 @@ void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double cr
             const Sum& sum = sums[group];
             const Vec3 normal =
                 length(sum.normal) > cancelled * sum.weight ? normalized(sum.normal) : Vec3{0, 0, 0};
+            if (from_file) {
+                const std::uint32_t given = soup.face_normals[f][i];
+                const Vec3 turned = scaled(soup.normals[given], -1);
+                if (dot(turned, faces[f]) > 0 && dot(turned, normal) > turned_cosine) {
+                    turned_number.resize(soup.normals.size(), no_neighbour);
+                    face_normals[f][i] = numbered(turned_number[given], turned);
+                    continue;
+                }
+            }
             if (dot(normal, faces[f]) > 0) {
                 face_normals[f][i] = numbered(group_number[group], normal);
                 continue;

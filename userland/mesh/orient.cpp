@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Orientation by component. A component is what can be reached over edges of exactly two faces. It is
-// closed when its boundary vanishes: on every edge its faces run as often one way as the other. That
-// holds for each of two cubes that share an edge, where no face has a unique neighbour.
+// Orientation by component: neighbours agree, a closed one points out of the solid that it bounds.
 #include <algorithm>
 #include <cmath>
 #include <compare>
 #include <memory>
 
+#include "mesh/components.hpp"
 #include "mesh/edge_index.hpp"
 #include "mesh/steps.hpp"
 #include "mesh/vector.hpp"
@@ -15,102 +14,11 @@ namespace phantom::mesh {
 
 namespace {
 
-struct Components {
-    std::vector<std::uint32_t> of_face;
-    std::vector<std::uint64_t> size,
-        turned;             ///< faces; of them those to turn so that all agree with the first
-    std::vector<bool> turn; ///< per face: against the first face of its component
-};
-
-/// Face over each half-edge where exactly two meet, whatever their sense, with "same sense" in the low bit;
-/// all ones otherwise.
-std::vector<std::uint64_t> links_of(const Soup& soup, const EdgeIndex& edges)
-{
-    std::vector<std::uint64_t> links(3 * soup.faces.size(), ~0ULL);
-    edges.for_each([&](std::uint32_t, std::uint32_t, std::span<const HalfEdge> halves) {
-        if (halves.size() != 2)
-            return;
-        const std::uint64_t same = from_vertex(soup.faces, halves[0]) == from_vertex(soup.faces, halves[1]);
-        links[halves[0]] = 2ULL * (halves[1] / 3) + same;
-        links[halves[1]] = 2ULL * (halves[0] / 3) + same;
-    });
-    return links;
-}
-
-/// Faces that agree already are reached before any is turned, so a second run finds nothing to turn. Each
-/// face is reached once, so a Moebius strip ends like any other; where it closes on itself two faces go on
-/// disagreeing.
-Components components_of(const Soup& soup, const EdgeIndex& edges)
-{
-    struct Step {
-        std::uint32_t face;
-        bool turn;
-    };
-    const std::vector<std::uint64_t> links = links_of(soup, edges);
-    const std::size_t faces = soup.faces.size();
-    Components found;
-    found.of_face.assign(faces, no_neighbour);
-    found.turn.assign(faces, false);
-    std::vector<Step> agreeing, disagreeing; // stacks
-    for (std::uint32_t seed = 0; seed < faces; ++seed) {
-        if (found.of_face[seed] != no_neighbour)
-            continue;
-        const auto component = static_cast<std::uint32_t>(found.size.size());
-        found.size.push_back(0);
-        found.turned.push_back(0);
-        agreeing.push_back({seed, false});
-        while (!agreeing.empty() || !disagreeing.empty()) {
-            std::vector<Step>& next = agreeing.empty() ? disagreeing : agreeing;
-            const Step step = next.back();
-            next.pop_back();
-            if (found.of_face[step.face] != no_neighbour)
-                continue;
-            found.of_face[step.face] = component;
-            found.turn[step.face] = step.turn;
-            ++found.size[component];
-            found.turned[component] += step.turn;
-            for (std::uint32_t i = 0; i < 3; ++i) {
-                const std::uint64_t link = links[3ULL * step.face + i];
-                const auto other = static_cast<std::uint32_t>(link / 2);
-                if (link == ~0ULL || found.of_face[other] != no_neighbour)
-                    continue;
-                const bool same_sense = link & 1;
-                (same_sense ? disagreeing : agreeing).push_back({other, step.turn != same_sense});
-            }
-        }
-    }
-    return found;
-}
-
 void turn(Soup& soup, std::size_t face)
 {
     std::swap(soup.faces[face][1], soup.faces[face][2]);
     if (!soup.face_normals.empty())
         std::swap(soup.face_normals[face][1], soup.face_normals[face][2]);
-}
-
-std::vector<bool> closed_components(const Soup& soup, const EdgeIndex& edges, const Components& components)
-{
-    std::vector<bool> closed(components.size.size(), true);
-    std::vector<std::pair<std::uint32_t, int>> sums; // per component on one edge
-    edges.for_each([&](std::uint32_t low, std::uint32_t, std::span<const HalfEdge> halves) {
-        sums.clear();
-        for (const HalfEdge half : halves) {
-            const std::uint32_t component = components.of_face[half / 3];
-            const int sense = from_vertex(soup.faces, half) == low ? 1 : -1;
-            auto sum =
-                std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == component; });
-            if (sum == sums.end())
-                sums.emplace_back(component, sense);
-            else
-                sum->second += sense;
-        }
-        for (const auto& [component, sum] : sums) {
-            if (sum != 0)
-                closed[component] = false;
-        }
-    });
-    return closed;
 }
 
 /// Signed volume of each component (positive: normals outward), and a bound of its rounding error.
@@ -121,8 +29,8 @@ struct Volume {
 std::vector<Volume> volumes_of(const Soup& soup, const Components& components)
 {
     // Relative to one of its own vertices, so that a small part far from the origin keeps its sign.
-    std::vector<std::uint32_t> anchor(components.size.size(), no_neighbour);
-    std::vector<Volume> volumes(components.size.size());
+    std::vector<std::uint32_t> anchor(components.count(), no_neighbour);
+    std::vector<Volume> volumes(components.count());
     for (std::size_t f = 0; f < soup.faces.size(); ++f) {
         const std::uint32_t component = components.of_face[f];
         const Triple& face = soup.faces[f];
@@ -179,17 +87,21 @@ std::uint64_t turn_to_agree(Soup& soup, const Components& components)
     return flipped;
 }
 
-/// Turns closed components that are inside out; returns how many components.
-std::uint64_t turn_outward(Soup& soup, const EdgeIndex& edges, const Components& components)
+/// Turns closed components that do not point out of their solid; returns how many components.
+std::uint64_t turn_outward(Soup& soup, const EdgeIndex& edges, const Components& components, Report& report)
 {
-    const std::vector<bool> closed = closed_components(soup, edges, components);
+    const std::vector<bool> closed = closed_components(soup.faces, edges, components);
+    const std::vector<bool> cavity = cavities_of(soup, components, closed);
     const std::vector<Volume> volumes = volumes_of(soup, components);
     std::vector<bool> inside_out(closed.size());
     std::uint64_t count = 0;
+    report.cavities = 0;
     for (std::size_t c = 0; c < closed.size(); ++c) {
         // A doubled sheet has no volume but rounding's: it has no outside either.
-        inside_out[c] = closed[c] && volumes[c].value < -1e-9 * volumes[c].magnitude;
+        const double outward = cavity[c] ? -volumes[c].value : volumes[c].value;
+        inside_out[c] = closed[c] && outward < -1e-9 * volumes[c].magnitude;
         count += inside_out[c];
+        report.cavities += cavity[c];
     }
     for (std::size_t f = 0; count > 0 && f < soup.faces.size(); ++f) {
         if (inside_out[components.of_face[f]])
@@ -200,28 +112,28 @@ std::uint64_t turn_outward(Soup& soup, const EdgeIndex& edges, const Components&
 
 } // namespace
 
-std::uint64_t count_components(const Soup& soup, const EdgeIndex& edges)
+void orient(Soup& soup, std::unique_ptr<EdgeIndex>& edges, Report& report)
 {
-    return components_of(soup, edges).size.size();
-}
-
-void orient(Soup& soup, Report& report)
-{
+    const auto index_again = [&] {
+        edges.reset(); // before the next: each is as large as the soup
+        edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
+    };
     // Turning faces can make two of them equal, and dropping one can give an edge its two faces: until
     // nothing changes. Each further round has fewer faces, so it ends.
     for (bool first = true;; first = false) {
-        auto edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
         const std::uint64_t dropped = drop_duplicates(soup, *edges);
         report.faces_duplicate += dropped;
         if (dropped == 0 && !first)
             return;
         if (dropped > 0)
-            edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
-        const Components components = components_of(soup, *edges);
+            index_again();
+        const Components components = components_of(soup.faces, *edges);
         const std::uint64_t flipped = turn_to_agree(soup, components);
         if (flipped > 0)
-            edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
-        const std::uint64_t turned = turn_outward(soup, *edges, components);
+            index_again();
+        const std::uint64_t turned = turn_outward(soup, *edges, components, report);
+        if (turned > 0)
+            index_again();
         report.faces_flipped += flipped;
         report.components_turned += turned;
         if (flipped == 0 && turned == 0)

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "mesh/steps.hpp"
+#include "mesh/stitch.hpp"
 #include "mesh/two_sided.hpp"
 #include "mesh/vector.hpp"
 
@@ -42,7 +44,8 @@ bool indices_in_range(const Soup& soup)
         });
     };
     return within(soup.faces, soup.vertices.size()) && within(soup.face_normals, soup.normals.size()) &&
-           (soup.face_normals.empty() || soup.face_normals.size() == soup.faces.size());
+           (soup.face_normals.empty() || soup.face_normals.size() == soup.faces.size()) &&
+           (soup.smoothing.empty() || soup.smoothing.size() == soup.faces.size());
 }
 
 /// Bounds of what the faces use: a stray vertex far away does not count.
@@ -77,6 +80,28 @@ Status fit(Soup& soup, double fit_mm, const std::string& name)
     return success();
 }
 
+/// Sews and cuts until there is nothing more to do; returns whether there was something. `edges` is the
+/// soup's, before and after.
+bool close_gaps(Soup& soup, std::unique_ptr<EdgeIndex>& edges, double weld_mm, Report& report)
+{
+    // Every round closes something; one that needs more than this is left to the report.
+    constexpr int rounds_max = 16;
+    const double tolerance_mm = stitch_tolerance_mm(soup, weld_mm);
+    int rounds = 0;
+    while (rounds < rounds_max && stitch(soup, *edges, tolerance_mm, report)) {
+        ++rounds;
+        drop_degenerate(soup, report);
+        edges.reset();
+        edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
+    }
+    if (rounds == 0)
+        return false;
+    drop_unused_vertices(soup);
+    edges.reset();
+    edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
+    return true;
+}
+
 Error no_usable_face(const Report& report, const std::string& name)
 {
     return Error{name, fmt::format("has no usable face: {} without area, {} not finite, of {}",
@@ -84,6 +109,16 @@ Error no_usable_face(const Report& report, const std::string& name)
 }
 
 } // namespace
+
+std::string words_of(const PrepareOptions& options)
+{
+    // By structured binding: an option that is added and left out here does not compile.
+    const auto& [full, scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided, progress] = options;
+    static_cast<void>(progress);
+    // Doubles in hexadecimal, so that not a bit is lost.
+    return fmt::format("{} scale {:a} fit {:a} weld {:a} crease {:a} split {:a}{}", full ? "full" : "none",
+                       scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided ? " two-sided" : "");
+}
 
 Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::string& name)
 {
@@ -98,12 +133,15 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     Report report;
     report.vertices_read = soup.vertices.size();
     report.faces_read = soup.faces.size();
+    report.polygons_crossed = soup.polygons_crossed;
     progress(0);
     for (Vec3& vertex : soup.vertices)
         vertex = scaled(vertex, options.scale);
     // Before the fit: what will be dropped must not count for the size.
     if (options.full)
         drop_degenerate(soup, report);
+    else
+        drop_nonfinite(soup, report);
     if (soup.faces.empty())
         return no_usable_face(report, name);
     if (options.fit_mm > 0) {
@@ -111,36 +149,56 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
             return status.error();
     }
 
+    std::unique_ptr<EdgeIndex> edges;
+    const auto index_again = [&] {
+        edges.reset(); // before the next: each is as large as the soup
+        edges = std::make_unique<EdgeIndex>(soup.faces, soup.vertices.size());
+    };
     if (options.full) {
         weld(soup, options.weld_mm, report);
         drop_degenerate(soup, report);
-        progress(0.3);
-        orient(soup, report);
         drop_unused_vertices(soup);
+        progress(0.3);
+        index_again();
+        orient(soup, edges, report);
+        if (close_gaps(soup, edges, options.weld_mm, report))
+            orient(soup, edges, report);
+        if (soup.faces.empty())
+            return no_usable_face(report, name);
         progress(0.6);
         if (options.split_mm > 0) {
             if (const auto status = split_long_edges(soup, options.split_mm, name, report); !status)
                 return status.error();
+            index_again();
         }
-        if (soup.faces.empty())
-            return no_usable_face(report, name);
+    } else {
+        index_again();
     }
     Mesh mesh;
-    const EdgeIndex edges(soup.faces, soup.vertices.size());
-    mesh.neighbours = neighbours_of(soup, edges, report);
-    report.components = count_components(soup, edges);
+    std::vector<Triple> neighbours = neighbours_of(soup, *edges, report, options.full);
+    report.components = count_components(neighbours);
+    measure_edges(soup, *edges, report);
+    edges.reset();
+    if (options.full)
+        separate_fans(soup, neighbours, report);
     progress(0.8);
     if (options.full)
-        corner_normals(soup, mesh.neighbours, options.crease_deg, report);
+        corner_normals(soup, neighbours, options.crease_deg, report);
     else if (soup.face_normals.empty())
         vertex_normals(soup);
+    mesh.neighbours = std::move(neighbours);
     mesh.vertices = std::move(soup.vertices);
     mesh.faces = std::move(soup.faces);
     mesh.normals = std::move(soup.normals);
     mesh.face_normals = std::move(soup.face_normals);
-    finish_report(mesh, edges, options.two_sided, report);
+    finish_report(mesh, options.two_sided, report);
     if (options.two_sided && !make_two_sided(mesh))
         return Error{name, "has too many faces to have two sides", "leave out two_sided"};
+    if (options.full && (report.faults = count_faults(mesh)) > 0)
+        report.warnings.push_back(
+            fmt::format("{} faces of the result are not as they should be, a fault of this "
+                        "program: please report it with the mesh",
+                        report.faults));
     progress(1);
     return Prepared{std::move(mesh), std::move(report)};
 }

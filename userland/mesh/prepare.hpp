@@ -24,19 +24,30 @@ struct PrepareOptions {
     std::function<void(double)> progress{}; ///< 0 ... 1, may be empty
 };
 
-/// What was found and what was done about it. Every input face is in faces or in exactly one dropped count.
-struct Report {
+/// Every option that the result depends on, in words: two that differ give different words.
+std::string words_of(const PrepareOptions& options);
+
+/// What was found and what was done about it. Every input face is in faces or in exactly one dropped count:
+/// faces_read (polygons cut into triangles) = faces - faces_split - faces_cut + faces_zero_area +
+/// faces_duplicate + faces_nonfinite.
+struct Findings {
     std::uint64_t vertices_read = 0, faces_read = 0;
+    std::uint64_t polygons_crossed = 0; ///< cross themselves: their triangles overlap
     std::uint64_t vertices_welded = 0;
     std::uint64_t faces_zero_area = 0; ///< dropped: two corners equal or collinear
     std::uint64_t faces_duplicate = 0; ///< dropped: same three vertices, same sense
-    std::uint64_t faces_nonfinite =
-        0;                           ///< dropped: a corner is not a finite point (no file that read() takes)
-    std::uint64_t faces_flipped = 0; ///< turned so that neighbours agree
+    std::uint64_t faces_nonfinite = 0; ///< dropped: a corner is not a finite point
+    std::uint64_t faces_flipped = 0;   ///< turned so that neighbours agree
     std::uint64_t components = 0;
-    std::uint64_t components_turned = 0; ///< closed and inside out: turned outward
-    std::uint64_t nonmanifold_edges = 0; ///< shared by more than two faces
-    std::uint64_t boundary_edges = 0;    ///< with one face
+    std::uint64_t components_turned = 0;    ///< closed and pointing into their solid: turned
+    std::uint64_t cavities = 0;             ///< closed components inside a solid: they point into the hollow
+    std::uint64_t vertices_sewn = 0;        ///< at a boundary: moved onto another one, which closed a crack
+    std::uint64_t t_junctions = 0;          ///< vertices on another face's boundary edge, which was cut there
+    std::uint64_t faces_cut = 0;            ///< faces added by that
+    std::uint64_t nonmanifold_edges = 0;    ///< shared by more than two faces; these were paired
+    std::uint64_t nonmanifold_vertices = 0; ///< where several fans of faces met, ends of such edges included
+    std::uint64_t vertices_separated = 0;   ///< added, so that each fan of faces has a vertex of its own
+    std::uint64_t boundary_edges = 0;       ///< over which a face has no neighbour
     /// At which a surface ends, by their points, one-sided; what hangs together of them is one rim. See
     /// rims.hpp.
     std::uint64_t rim_edges = 0, rims = 0;
@@ -45,9 +56,16 @@ struct Report {
     std::uint64_t normals_repaired = 0;    ///< corner normals that cancelled to zero or did not fit
     std::uint64_t faces_split = 0;         ///< faces added by bisection
     std::uint64_t vertices = 0, faces = 0; ///< of the result
+    double moved_max_mm = 0; ///< no part of the surface was moved farther by welding, sewing and cutting
     double edge_min_mm = 0, edge_median_mm = 0, edge_max_mm = 0;
-    bool watertight = false; ///< every edge has exactly two faces, of opposite sense
+    bool watertight = false; ///< every face has a neighbour over each of its edges
     double size_mm[3] = {0, 0, 0};
+    /// Places where the result is not what it should be, by the last step's checks (validate.cpp). Not 0 is a
+    /// fault of this program.
+    std::uint64_t faults = 0;
+};
+
+struct Report : Findings {
     std::vector<std::string> warnings; ///< one line each; names the option that helps, where there is one
 };
 

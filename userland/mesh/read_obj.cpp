@@ -93,6 +93,13 @@ class LineWalk {
         soup.corner_normals = std::move(corner_normals_);
     }
 
+    /// The same for smoothing groups, one a face.
+    void give_smoothing(PolygonSoup& soup)
+    {
+        if (std::any_of(smoothing_.begin(), smoothing_.end(), [](std::uint32_t group) { return group != 0; }))
+            soup.smoothing = std::move(smoothing_);
+    }
+
     [[nodiscard]] std::size_t corners() const { return corner_normals_.size(); }
 
   private:
@@ -129,6 +136,8 @@ class LineWalk {
         std::string what;
         if (keyword == "vn")
             what = normal(words);
+        else if (keyword == "s")
+            what = smoothing_group(words);
         else if (!is_known(keyword))
             what = fmt::format("unknown word \"{}\", expected v, vn, vt or f", keyword.substr(0, 20));
         bytes_[at] = '#';
@@ -159,6 +168,21 @@ class LineWalk {
         return {};
     }
 
+    /// "s 3" for the faces that follow; "s off" and "s 0" end it.
+    std::string smoothing_group(Words& words)
+    {
+        const std::string_view word = words.next();
+        group_ = 0;
+        if (word == "off" || word == "on") {
+            group_ = word == "on";
+            return {};
+        }
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), group_);
+        if (word.empty() || error != std::errc() || end != word.data() + word.size())
+            return "expected \"s off\" or \"s GROUP\" with a whole number";
+        return {};
+    }
+
     std::string face(Words& words)
     {
         std::size_t corners = 0;
@@ -170,6 +194,7 @@ class LineWalk {
         }
         if (corners < 3)
             return fmt::format("a face with {} corners, expected 3 or more", corners);
+        smoothing_.push_back(group_);
         return {};
     }
 
@@ -233,6 +258,8 @@ class LineWalk {
     std::vector<Vec3> normals_;
     std::vector<std::uint32_t> corner_normals_;
     bool some_normal_used_ = false;
+    std::uint32_t group_ = 0;              ///< smoothing group of the faces that follow; 0: none
+    std::vector<std::uint32_t> smoothing_; ///< per face
     std::int64_t largest_vertex_ = -1, largest_normal_ = -1;
     std::size_t largest_vertex_at_ = 0, largest_normal_at_ = 0;
     std::vector<std::size_t> joined_; ///< offsets of line ends that were blanked
@@ -258,6 +285,7 @@ Result<PolygonSoup> read_obj(std::string& bytes, const std::string& name)
         return Error{name, fmt::format("has faces that cannot be read: {} corners of {}", soup.corners.size(),
                                        lines.corners())};
     lines.give_normals(soup);
+    lines.give_smoothing(soup);
     return soup;
 }
 

@@ -12,23 +12,6 @@ namespace phantom::mesh {
 
 namespace {
 
-void measure_edges(const Mesh& mesh, const EdgeIndex& edges, Report& report)
-{
-    std::vector<double> sizes;
-    sizes.reserve(3 * mesh.faces.size() / 2);
-    edges.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const HalfEdge>) {
-        sizes.push_back(distance(mesh.vertices[low], mesh.vertices[high]));
-    });
-    if (sizes.empty())
-        return;
-    const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
-    report.edge_min_mm = *least;
-    report.edge_max_mm = *most;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    report.edge_median_mm = *middle;
-}
-
 /// The hand works in a space of some decimetres: anything else is most likely another unit.
 void warn_size(double extent_mm, Report& report)
 {
@@ -64,11 +47,27 @@ void warn_defects(bool two_sided, Report& report)
 
 } // namespace
 
-void finish_report(const Mesh& mesh, const EdgeIndex& edges, bool two_sided, Report& report)
+void measure_edges(const Soup& soup, const EdgeIndex& edges, Report& report)
+{
+    std::vector<double> sizes;
+    sizes.reserve(3 * soup.faces.size() / 2);
+    edges.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const HalfEdge>) {
+        sizes.push_back(distance(soup.vertices[low], soup.vertices[high]));
+    });
+    if (sizes.empty())
+        return;
+    const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+    report.edge_min_mm = *least;
+    report.edge_max_mm = *most;
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    report.edge_median_mm = *middle;
+}
+
+void finish_report(const Mesh& mesh, bool two_sided, Report& report)
 {
     report.vertices = mesh.vertices.size();
     report.faces = mesh.faces.size();
-    measure_edges(mesh, edges, report);
     const Rims rims = make_rims(mesh, 0);
     report.rim_edges = rims.edges.size();
     report.rims = rims.loops;

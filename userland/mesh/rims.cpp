@@ -135,8 +135,13 @@ Vec3 middle(const Mesh& mesh, const Rim& rim)
     return scaled(add(mesh.vertices[rim.from], mesh.vertices[rim.to]), 0.5);
 }
 
+struct RimTree {
+    std::vector<Rim> edges;
+    std::vector<RimNode> nodes;
+};
+
 /// Orders rims first ... first + count - 1 and appends the nodes over them.
-void add_nodes(const Mesh& mesh, std::uint32_t first, std::uint32_t count, Rims& out)
+void add_nodes(const Mesh& mesh, std::uint32_t first, std::uint32_t count, RimTree& out)
 {
     RimNode node{mesh.vertices[out.edges[first].from], mesh.vertices[out.edges[first].from], 0, first, 0};
     for (std::uint32_t i = first; i < first + count; ++i) {
@@ -217,15 +222,17 @@ bool near_a_rim(const Rims& rims, const Mesh& mesh, std::uint32_t face, double r
 }
 
 /// Faces that no rim concerns get surface 0.
-void forget_far_faces(const Mesh& mesh, double reach_mm, Rims& rims)
+std::vector<std::uint32_t> near_faces(const Mesh& mesh, double reach_mm, const Rims& rims)
 {
+    std::vector<std::uint32_t> surface = rims.surface.to_vector();
     // by number of surface; by face
     std::vector<bool> ends(mesh.faces.size() + 1, false), has_rim(mesh.faces.size(), false);
     for (const Rim& rim : rims.edges)
         ends[rim.surface] = has_rim[rim.face] = true;
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
         if (!has_rim[f] && (!ends[rims.surface[f]] || !near_a_rim(rims, mesh, f, reach_mm)))
-            rims.surface[f] = 0;
+            surface[f] = 0;
+    return surface;
 }
 
 } // namespace
@@ -247,11 +254,14 @@ Rims make_rims(const Mesh& mesh, double reach_mm)
         return rims;
     rims.loops = count_loops(mesh, edges);
     rims.surface = number_surfaces(mesh, loose);
+    RimTree tree;
     for (const LooseEdge& e : edges)
-        rims.edges.push_back(
+        tree.edges.push_back(
             {mesh.faces[e.face][e.edge], mesh.faces[e.face][(e.edge + 1) % 3], e.face, rims.surface[e.face]});
-    add_nodes(mesh, 0, static_cast<std::uint32_t>(rims.edges.size()), rims);
-    forget_far_faces(mesh, reach_mm, rims);
+    add_nodes(mesh, 0, static_cast<std::uint32_t>(tree.edges.size()), tree);
+    rims.edges = std::move(tree.edges);
+    rims.nodes = std::move(tree.nodes);
+    rims.surface = near_faces(mesh, reach_mm, rims);
     return rims;
 }
 

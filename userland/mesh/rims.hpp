@@ -18,6 +18,7 @@ struct Rim {
     std::uint32_t from, to; ///< vertices, as the face runs
     std::uint32_t face;     ///< which ends there
     std::uint32_t surface;  ///< of that face; > 0
+    bool operator==(const Rim&) const = default;
 };
 
 /// A box round some of the rims. In preorder: what follows a node up to `skip` lies in it.
@@ -25,15 +26,16 @@ struct RimNode {
     Vec3 low, high;
     std::uint32_t skip;         ///< the next node that does not lie in this one
     std::uint32_t first, count; ///< rims of a leaf; count 0 elsewhere
+    bool operator==(const RimNode&) const = default;
 };
 
 struct Rims {
-    std::vector<Rim> edges;
+    SharedArray<Rim> edges;
     std::uint64_t loops = 0; ///< rims that hang together count as one
     /// Per face: the number of its surface, from 1 on, when a rim of it may come within the reach that they
     /// were made for; else 0. Empty when there is no rim.
-    std::vector<std::uint32_t> surface;
-    std::vector<RimNode> nodes; ///< over `edges`
+    SharedArray<std::uint32_t> surface;
+    SharedArray<RimNode> nodes; ///< over `edges`
 
     [[nodiscard]] std::uint32_t surface_of(std::uint32_t face) const
     {

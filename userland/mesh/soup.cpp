@@ -5,20 +5,21 @@
 
 #include <fmt/format.h>
 
+#include "mesh/polygon.hpp"
 #include "mesh/vector.hpp"
 
 namespace phantom::mesh {
 
 namespace {
 
-/// nullopt-like: an empty text when all is well.
+/// An empty text when all is well. What is no number is: scanners mark by it what they did not see, and
+/// prepare() drops and counts the faces.
 std::string bad_vertex(const std::vector<Vec3>& vertices, std::size_t& number)
 {
     for (number = 0; number < vertices.size(); ++number) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double value = vertices[number][axis];
-            // The negated comparison is true for NaN as well.
-            if (!(std::abs(value) <= coordinate_max))
+            if (std::isfinite(value) && std::abs(value) > coordinate_max)
                 return fmt::format("{} is {}, expected a finite number within +-{:g}", "xyz"[axis], value,
                                    coordinate_max);
         }
@@ -57,7 +58,12 @@ Result<Soup> triangles_of(PolygonSoup&& polygons, const std::string& name)
         return Error{name, fmt::format("has {} vertices but {} normals", soup.vertices.size(),
                                        polygons.normals.size())};
 
-    soup.faces.reserve(polygons.corners.size());
+    soup.faces.reserve(polygons.corners.size() - 2 * polygons.polygons());
+    if (with_normals)
+        soup.face_normals.reserve(soup.faces.capacity());
+    PolygonCutter cutter;
+    std::vector<Vec3> outline;
+    std::vector<Triple> triangles;
     for (std::size_t p = 0; p < polygons.polygons(); ++p) {
         const std::size_t first = polygons.first[p], last = polygons.first[p + 1];
         if (last - first < 3)
@@ -70,12 +76,20 @@ Result<Soup> triangles_of(PolygonSoup&& polygons, const std::string& name)
                              fmt::format("names vertex {}, expected 0 ... {}",
                                          static_cast<std::int32_t>(vertex), vertices - 1)};
         }
-        for (std::size_t corner = first + 1; corner + 1 < last; ++corner) {
-            soup.faces.push_back(
-                {polygons.corners[first], polygons.corners[corner], polygons.corners[corner + 1]});
+        outline.clear();
+        for (std::size_t corner = first; corner < last; ++corner)
+            outline.push_back(soup.vertices[polygons.corners[corner]]);
+        triangles.clear();
+        soup.polygons_crossed += !cutter.cut(outline, triangles);
+        for (const Triple& t : triangles) {
+            soup.faces.push_back({polygons.corners[first + t[0]], polygons.corners[first + t[1]],
+                                  polygons.corners[first + t[2]]});
             if (with_normals)
-                soup.face_normals.push_back({normal_of[first], normal_of[corner], normal_of[corner + 1]});
+                soup.face_normals.push_back(
+                    {normal_of[first + t[0]], normal_of[first + t[1]], normal_of[first + t[2]]});
         }
+        if (!polygons.smoothing.empty())
+            soup.smoothing.insert(soup.smoothing.end(), triangles.size(), polygons.smoothing[p]);
     }
     soup.normals = std::move(polygons.normals);
     normalize_all(soup.normals);

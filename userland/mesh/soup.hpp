@@ -23,10 +23,12 @@ struct PolygonSoup {
     std::vector<Vec3> normals;                 ///< as in the file, any length; empty when it gives none
     std::vector<std::uint32_t> corner_normals; ///< per corner; empty: the corner's vertex number
 
+    std::vector<std::uint32_t> smoothing; ///< per polygon, see Soup; empty when the file has no groups
+
     [[nodiscard]] std::size_t polygons() const { return first.size() - 1; }
 };
 
-/// Checks every value and index, fans polygons into triangles round their first corner, normalizes normals.
+/// Checks every value and index, cuts polygons into triangles (polygon.hpp), normalizes normals.
 /// `name` is the file. Errors name the vertex or face, counted from 0 as the file's own indices are.
 Result<Soup> triangles_of(PolygonSoup&& polygons, const std::string& name);
 

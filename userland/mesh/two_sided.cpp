@@ -11,14 +11,19 @@ bool make_two_sided(Mesh& mesh)
     const auto normals = static_cast<std::uint32_t>(mesh.normals.size());
     if (mesh.faces.size() >= no_neighbour / 2 || mesh.normals.size() >= no_neighbour / 2)
         return false;
-    mesh.normals.reserve(2 * mesh.normals.size());
+    Soup both{{}, mesh.faces.to_vector(), mesh.normals.to_vector(), mesh.face_normals.to_vector()};
+    std::vector<Triple> neighbours = mesh.neighbours.to_vector();
+    both.normals.reserve(2UL * normals);
+    both.faces.reserve(2UL * count);
+    both.face_normals.reserve(2UL * count);
+    neighbours.reserve(2UL * count);
     for (std::uint32_t i = 0; i < normals; ++i)
-        mesh.normals.push_back(scaled(mesh.normals[i], -1));
+        both.normals.push_back(scaled(both.normals[i], -1));
     for (std::uint32_t f = 0; f < count; ++f) {
-        const Triple face = mesh.faces[f], corner = mesh.face_normals[f];
-        mesh.faces.push_back({face[0], face[2], face[1]});
-        mesh.face_normals.push_back({corner[0] + normals, corner[2] + normals, corner[1] + normals});
-        Triple& front = mesh.neighbours[f];
+        const Triple face = both.faces[f], corner = both.face_normals[f];
+        both.faces.push_back({face[0], face[2], face[1]});
+        both.face_normals.push_back({corner[0] + normals, corner[2] + normals, corner[1] + normals});
+        Triple& front = neighbours[f];
         Triple back{};
         for (std::uint32_t edge = 0; edge < 3; ++edge) {
             // corner i to i + 1 of the face is corner 2 - i to 3 - i of its back
@@ -26,8 +31,12 @@ bool make_two_sided(Mesh& mesh)
             if (front[edge] == no_neighbour)
                 front[edge] = f + count;
         }
-        mesh.neighbours.push_back(back);
+        neighbours.push_back(back);
     }
+    mesh.faces = std::move(both.faces);
+    mesh.normals = std::move(both.normals);
+    mesh.face_normals = std::move(both.face_normals);
+    mesh.neighbours = std::move(neighbours);
     return true;
 }
 

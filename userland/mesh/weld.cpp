@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -126,6 +127,11 @@ void weld(Soup& soup, double weld_mm, Report& report)
         weld_mm > 0 ? weld_near(soup.vertices, weld_mm) : weld_equal(soup.vertices);
     for (std::uint32_t v = 0; v < to.size(); ++v)
         report.vertices_welded += to[v] != v;
+    if (weld_mm > 0) {
+        for (std::uint32_t v = 0; v < to.size(); ++v)
+            report.moved_max_mm =
+                std::max(report.moved_max_mm, distance(soup.vertices[v], soup.vertices[to[v]]));
+    }
     for (Triple& face : soup.faces) {
         for (std::uint32_t& v : face)
             v = to[v];

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <chrono>
+
 #include <fmt/format.h>
 
 #include "mesh/read.hpp"
+#include "scene/cache.hpp"
 #include "scene/ranges.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
-#include "scene/shapes.hpp"
+#include "scene/shapes/shape.hpp"
 #include "scene/units.hpp"
 
 namespace phantom::scene {
@@ -50,7 +53,7 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
     mesh::PrepareOptions prepare = options.prepare;
     const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or("mm")));
     // A shape's sizes are in mm already.
-    prepare.scale *= object.shape == Shape::none ? millimetres_in(unit).value_or(1.0) : 1.0;
+    prepare.scale *= object.shape ? 1.0 : millimetres_in(unit).value_or(1.0);
     prepare.two_sided = object.two_sided;
     if (prepare.fit_mm <= 0 && object.fit_mm)
         prepare.fit_mm = *object.fit_mm;
@@ -59,35 +62,78 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
 
 Result<mesh::Soup> geometry_of(const ObjectEntry& object)
 {
-    if (object.shape == Shape::sphere)
-        return sphere_soup(object.sphere_radius_mm);
-    if (object.shape == Shape::box)
-        return box_soup(object.box_size_mm);
+    if (object.shape) {
+        auto soup = triangulate(*object.shape, object.chord_mm);
+        if (soup)
+            return soup;
+        const auto& [key, what, remedy] = soup.error();
+        const auto place = object.shape_where.find(key);
+        return Error{place == object.shape_where.end() ? object.where : place->second,
+                     fmt::format("{}: {}: {}", object.name, key, what), remedy};
+    }
     auto soup = mesh::read(object.mesh);
     if (!soup && !object.mesh_where.empty() && !std::filesystem::exists(object.mesh))
         return Error{object.mesh_where, "mesh: no such file: " + object.mesh.string()};
     return soup;
 }
 
-Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
-                           const LoadOptions& options)
+/// Reads and prepares.
+Status fill(const ObjectEntry& entry, const mesh::PrepareOptions& prepare, double reach_mm, Object& object)
 {
     auto soup = geometry_of(entry);
     if (!soup)
         return soup.error();
     const std::string name = entry.mesh.empty() ? entry.name : entry.mesh.string();
-    auto prepared = mesh::prepare(std::move(*soup), prepare_options(file, entry, options), name);
+    auto prepared = mesh::prepare(std::move(*soup), prepare, name);
     if (!prepared)
         return prepared.error();
+    object.mesh = std::move(prepared->mesh);
+    object.fans = mesh::make_fans(object.mesh);
+    object.rims = mesh::make_rims(object.mesh, reach_mm);
+    object.report = std::move(prepared->report);
+    return success();
+}
+
+/// As fill(), by way of the cache.
+Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
+                   const std::filesystem::path& directory, Object& object, Scene& scene)
+{
+    const Result<CacheTicket> ticket = ticket_for(request);
+    // A file that cannot be read gets read()'s own words.
+    if (!ticket)
+        return fill(entry, request.prepare, request.reach_mm, object);
+    const Result<bool> opened = open_cached(directory, *ticket, object);
+    if (opened && *opened) {
+        object.from_cache = true;
+        return success();
+    }
+    if (!opened)
+        scene.notes.push_back(opened.error().text() + ": prepared again");
+    if (const Status status = fill(entry, request.prepare, request.reach_mm, object); !status)
+        return status;
+    const auto begin = std::chrono::steady_clock::now();
+    object.build_hulls();
+    scene.hulls_ms +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    if (const Status status = keep(directory, *ticket, request, object); !status)
+        scene.notes.push_back(status.error().text() + ": the next load will prepare it again");
+    return success();
+}
+
+Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
+                           const LoadOptions& options, Scene& scene)
+{
     Object object;
     object.name = entry.name;
     object.file = entry.mesh;
-    object.mesh = std::move(prepared->mesh);
-    object.fans = mesh::make_fans(object.mesh);
-    object.rims = mesh::make_rims(object.mesh, material.radius_mm);
-    object.report = std::move(prepared->report);
     object.pose = entry.pose;
     object.material = entry.material;
+    const CacheRequest request{entry.mesh, prepare_options(file, entry, options), material.radius_mm};
+    const Status status = options.cache && is_cacheable(entry.mesh)
+                              ? fill_cached(entry, request, *options.cache, object, scene)
+                              : fill(entry, request.prepare, request.reach_mm, object);
+    if (!status)
+        return status.error();
     return object;
 }
 
@@ -111,6 +157,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     scene.file = file;
     scene.device = entries->device;
     scene.servo = entries->servo;
+    scene.levels = entries->levels;
     scene.materials = entries->materials;
     for (Material& material : scene.materials) {
         material.stiffness_n_mm = options.stiffness_n_mm.value_or(material.stiffness_n_mm);
@@ -118,7 +165,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     }
     std::uint64_t first_face = 0, first_vertex = 0;
     for (const ObjectEntry& entry : entries->objects) {
-        auto object = make_object(*entries, entry, scene.materials[entry.material], options);
+        auto object = make_object(*entries, entry, scene.materials[entry.material], options, scene);
         if (!object)
             return object.error();
         object->first_face = static_cast<std::uint32_t>(first_face);

@@ -18,6 +18,7 @@ inline constexpr Range stiffness_n_mm{0.001, 1000.0, "0.001 ... 1000 N/mm"};
 inline constexpr Range radius_mm{0.001, 100.0, "0.001 ... 100 mm"};
 inline constexpr Range damping_ns_m{0.0, 1000.0, "0 ... 1000 N*s/m"};
 inline constexpr Range length_mm{1e-6, 1e6, "0.000001 ... 1000000 mm"};
+inline constexpr Range chord_mm{1e-6, 1e4, "0.000001 ... 10000 mm"};
 inline constexpr Range position_mm{-1e6, 1e6, "-1000000 ... 1000000 mm"};
 inline constexpr Range max_force_n{0.001, 1000.0, "0.001 ... 1000 N"};
 inline constexpr Range slew_n_per_ms{0.001, 1000.0, "0.001 ... 1000 N/ms"};

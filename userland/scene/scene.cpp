@@ -2,6 +2,7 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace phantom::scene {
 
@@ -23,16 +24,21 @@ std::uint64_t Scene::patches() const
 
 mesh::Bounds Scene::bounds() const
 {
-    std::vector<mesh::Vec3> world;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    mesh::Bounds world{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
     for (const Object& object : objects) {
         const auto& r = object.pose.rotation;
         const auto& t = object.pose.translation;
-        for (const mesh::Vec3& v : object.mesh.vertices)
-            world.push_back({r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + t[0],
-                             r[3] * v[0] + r[4] * v[1] + r[5] * v[2] + t[1],
-                             r[6] * v[0] + r[7] * v[1] + r[8] * v[2] + t[2]});
+        for (const mesh::Vec3& v : object.mesh.vertices) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double* row = &r[3 * axis];
+                const double x = row[0] * v[0] + row[1] * v[1] + row[2] * v[2] + t[axis];
+                world.low[axis] = std::min(world.low[axis], x);
+                world.high[axis] = std::max(world.high[axis], x);
+            }
+        }
     }
-    return mesh::bounds_of(world);
+    return world.low[0] <= world.high[0] ? world : mesh::Bounds{};
 }
 
 double Scene::max_radius_mm() const

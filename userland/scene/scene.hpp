@@ -25,13 +25,24 @@ struct Material {
     std::optional<double> damping_ns_m{}; ///< N*s/m; the effect is called for only when named
 };
 
-struct Object {
+/// What can be touched of an object: its mesh, and what was made of it. A copy shares all arrays.
+struct Surface {
+    mesh::Mesh mesh;     ///< object frame, mm
+    mesh::Fans fans;     ///< of the mesh's creases
+    mesh::Rims rims;     ///< where the mesh is open, for the material's contact radius
+    double error_mm = 0; ///< how far it is from what was read, where it is a simplification
+    std::optional<fdh::TriangleTree<14>>
+        tree; ///< hulls over the mesh's faces; build_tree() makes them if not
+
+    /// Makes the hulls where there are none.
+    void build_hulls();
+};
+
+struct Object : Surface {
     std::string name;
     std::filesystem::path file;
-    mesh::Mesh mesh; ///< object frame, mm
-    mesh::Fans fans; ///< of the mesh's creases
-    mesh::Rims rims; ///< where the mesh is open, for the material's contact radius
     mesh::Report report;
+    bool from_cache = false;
     fdh::Pose pose;
     std::uint32_t material = 0;                     ///< index into Scene::materials
     std::uint32_t first_face = 0, first_vertex = 0; ///< scene-wide numbers of face 0 and vertex 0
@@ -56,6 +67,9 @@ struct Scene {
     std::vector<Material> materials; ///< at least one
     DeviceSettings device;
     ServoSettings servo;
+    double hulls_ms = 0;            ///< what building hulls took of loading, for the cache
+    std::optional<bool> levels;     ///< of detail (levels.hpp): whether there shall be any
+    std::vector<std::string> notes; ///< what went wrong beside the loading itself, one line each
 
     [[nodiscard]] std::uint64_t triangles() const;
     /// Patches of a set that holds everything: triangles, the fans of their creases and
@@ -70,6 +84,8 @@ struct Scene {
 
 struct LoadOptions {
     mesh::PrepareOptions prepare;
+    /// Where prepared objects are kept, see cache.hpp; nothing: they are prepared every time.
+    std::optional<std::filesystem::path> cache;
     std::optional<std::string> unit;      ///< "mm", "m", "cm", "in", "um"; default mm, or the scene's
     std::optional<double> stiffness_n_mm; ///< replaces every material's
     std::optional<double> radius_mm;

@@ -7,10 +7,11 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "mesh/bytes.hpp"
 #include "mesh/read.hpp"
 #include "mesh/vector.hpp"
+#include "scene/shapes/shape_keys.hpp"
 #include "scene/toml_reader.hpp"
 #include "scene/units.hpp"
 
@@ -19,11 +20,11 @@ namespace phantom::scene {
 namespace {
 
 constexpr std::array<std::string_view, 5> unit_words = {"um", "mm", "cm", "m", "in"};
-constexpr std::array<std::string_view, 2> shape_words = {"sphere", "box"};
 constexpr std::array<std::string_view, 3> model_words = {"paper", "projected", "off"};
 constexpr std::array<std::string_view, 2> combine_words = {"paper", "bounded"};
 constexpr std::array<std::string_view, 3> proxy_words = {"paper", "constrained", "off"};
 constexpr std::array<std::string_view, 3> arith_words = {"float", "fixed", "double"};
+constexpr std::array<std::string_view, 2> level_words = {"auto", "off"};
 constexpr int newton_steps_max = 3; ///< PHANTOM_NEWTON_STEPS_MAX
 
 /// Rotation by an angle about a unit axis (Rodrigues), row-major.
@@ -88,6 +89,30 @@ fdh::Pose read_pose(const toml::table& table, const std::string& path, Faults& f
     return out;
 }
 
+using Keys = std::vector<std::string_view>;
+
+Keys joined(std::initializer_list<std::string_view> keys, std::span<const std::string_view> more)
+{
+    Keys all(keys);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
+/// Every key that some [[object]] may have, and what this one may.
+struct ObjectKeys {
+    Keys known, expected;
+
+    explicit ObjectKeys(const toml::table& object)
+        : known(joined({"name", "mesh", "shape", "unit", "fit_mm", "two_sided", "pose", "material"},
+                       shape_keys()))
+    {
+        const auto own = shape_keys(object["shape"].value_or(std::string_view()));
+        expected = own.empty()
+                       ? Keys{"name", "mesh", "shape", "unit", "fit_mm", "two_sided", "pose", "material"}
+                       : joined({"name", "shape", "pose", "material", "two_sided"}, own);
+    }
+};
+
 /// A key that has no meaning beside another.
 void refuse_beside(TomlReader& object, std::string_view key, std::string_view other)
 {
@@ -95,27 +120,21 @@ void refuse_beside(TomlReader& object, std::string_view key, std::string_view ot
         object.fault(key, fmt::format("has no meaning with {}", other));
 }
 
-void read_shape(TomlReader& object, ObjectEntry& out)
+void read_shape_object(TomlReader& object, const std::filesystem::path& scene, Faults& faults,
+                       ObjectEntry& out)
 {
-    const auto shape = object.word("shape", shape_words);
-    if (!shape)
-        return;
     refuse_beside(object, "unit", "shape: sizes are in mm");
     refuse_beside(object, "fit_mm", "shape: sizes are in mm");
-    refuse_beside(object, "two_sided", "shape: it is closed");
-    if (*shape == "sphere") {
-        out.shape = Shape::sphere;
-        out.sphere_radius_mm = object.number("radius_mm", range::length_mm).value_or(0);
-        if (!object.has("radius_mm"))
-            object.fault("shape", "a sphere needs radius_mm");
-        refuse_beside(object, "size_mm", "shape = \"sphere\"");
-    } else {
-        out.shape = Shape::box;
-        object.numbers("size_mm", range::length_mm, out.box_size_mm);
-        if (!object.has("size_mm"))
-            object.fault("shape", "a box needs size_mm = [x, y, z]");
-        refuse_beside(object, "radius_mm", "shape = \"box\"");
-    }
+    auto entry = read_shape(object, scene);
+    if (!entry)
+        return;
+    if (!entry->open)
+        refuse_beside(object, "two_sided", "shape: it is closed");
+    out.shape = std::move(entry->shape);
+    out.two_sided = object.flag("two_sided").value_or(false);
+    out.chord_mm = object.number("chord_mm", range::chord_mm);
+    for (const std::string_view key : shape_keys())
+        out.shape_where.emplace(key, faults.where(object.source(object.has(key) ? key : "shape")));
 }
 
 void read_mesh(TomlReader& object, const std::filesystem::path& scene, Faults& faults, ObjectEntry& out)
@@ -132,8 +151,8 @@ void read_mesh(TomlReader& object, const std::filesystem::path& scene, Faults& f
     out.unit = object.word("unit", unit_words);
     out.fit_mm = object.number("fit_mm", range::length_mm);
     out.two_sided = object.flag("two_sided").value_or(false);
-    refuse_beside(object, "radius_mm", "mesh");
-    refuse_beside(object, "size_mm", "mesh");
+    for (const std::string_view key : shape_keys())
+        refuse_beside(object, key, "mesh");
 }
 
 /// One [[object]], but for its material.
@@ -145,14 +164,14 @@ ObjectEntry read_object(TomlReader& object, const std::string& path, const std::
         object.fault(object.has("mesh") ? "shape" : "mesh",
                      object.has("mesh")
                          ? "stands beside mesh, expected one of the two"
-                         : "is missing, expected mesh = \"FILE\" or shape = \"sphere\" or \"box\"");
+                         : fmt::format("is missing, expected mesh = \"FILE\" or shape = \"{}\"",
+                                       fmt::join(shape_words(), "\" or \"")));
     else if (object.has("mesh"))
         read_mesh(object, scene, faults, out);
     else
-        read_shape(object, out);
-    out.name = object.text("name").value_or(out.shape == Shape::sphere ? "sphere"
-                                            : out.shape == Shape::box  ? "box"
-                                                                       : out.mesh.stem().string());
+        read_shape_object(object, scene, faults, out);
+    out.name = object.text("name").value_or(
+        object.has("shape") ? object.word("shape", shape_words()).value_or("") : out.mesh.stem().string());
     if (const toml::table* pose = object.table("pose"))
         out.pose = read_pose(*pose, path + "pose.", faults);
     return out;
@@ -218,10 +237,8 @@ void read_objects(TomlReader& root, const toml::table& table, const std::filesys
             faults.add(objects->get(i)->source(), path + "expected a table [[object]]");
             return;
         }
-        TomlReader reader(*entry, path,
-                          {"name", "mesh", "shape", "radius_mm", "size_mm", "unit", "fit_mm", "two_sided",
-                           "pose", "material"},
-                          faults);
+        const ObjectKeys keys(*entry);
+        TomlReader reader(*entry, path, keys.known, keys.expected, faults);
         ObjectEntry object = read_object(reader, path, scene, faults);
         object.where = faults.where(entry->source());
         object.material = material_index(reader, out);
@@ -259,22 +276,17 @@ void read_servo(const toml::table& table, Faults& faults, ServoSettings& out)
 
 Result<SceneFile> read_scene_file(const std::filesystem::path& file)
 {
-    const auto bytes = mesh::load_bytes(file);
-    if (!bytes)
-        return bytes.error();
-    toml::table table;
-    try {
-        table = toml::parse(*bytes, file.string());
-    } catch (const toml::parse_error& error) {
-        return Error{fmt::format("{}:{}", file.string(), error.source().begin.line),
-                     std::string("is not TOML: ") + std::string(error.description())};
-    }
+    const auto table = parse_toml(file);
+    if (!table)
+        return table.error();
     Faults faults(file.string());
     SceneFile out;
-    TomlReader root(table, "", {"unit", "object", "material", "device", "servo"}, faults);
+    TomlReader root(*table, "", {"unit", "levels", "object", "material", "device", "servo"}, faults);
     out.unit = root.word("unit", unit_words);
+    if (const auto word = root.word("levels", level_words))
+        out.levels = *word == "auto";
     read_materials(root, faults, out);
-    read_objects(root, table, file, faults, out);
+    read_objects(root, *table, file, faults, out);
     if (const toml::table* device = root.table("device"))
         read_device(*device, faults, out.device);
     if (const toml::table* servo = root.table("servo"))

@@ -3,25 +3,25 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.hpp"
 #include "scene/scene.hpp"
+#include "scene/shapes/shape.hpp"
 
 namespace phantom::scene {
-
-enum class Shape { none, sphere, box };
 
 struct ObjectEntry {
     std::string where; ///< "file:line" of the [[object]]
     std::string name;
     std::filesystem::path mesh; ///< as the file is to be opened; empty with a shape
     std::string mesh_where;     ///< "file:line" of the key mesh
-    Shape shape = Shape::none;
-    double sphere_radius_mm = 0;
-    mesh::Vec3 box_size_mm{0, 0, 0};
+    std::optional<Shape> shape;
+    std::optional<double> chord_mm;                              ///< of a shape
+    std::map<std::string, std::string, std::less<>> shape_where; ///< "file:line" of the shape's keys
     std::optional<std::string> unit;
     std::optional<double> fit_mm;
     fdh::Pose pose;
@@ -35,6 +35,7 @@ struct SceneFile {
     std::vector<Material> materials; ///< at least one
     DeviceSettings device;
     ServoSettings servo;
+    std::optional<bool> levels; ///< nothing: as the program likes
 };
 
 /// Errors: "file:line: key: what was expected".

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "mesh/bytes.hpp"
+
 namespace phantom::scene {
 
 void Faults::add(const toml::source_region& at, std::string what)
@@ -38,14 +40,27 @@ std::string shown(const toml::node& node)
     return text.str();
 }
 
-TomlReader::TomlReader(const toml::table& table, std::string path,
-                       std::initializer_list<std::string_view> keys, Faults& faults)
+Result<toml::table> parse_toml(const std::filesystem::path& file)
+{
+    const auto bytes = mesh::load_bytes(file);
+    if (!bytes)
+        return bytes.error();
+    try {
+        return toml::parse(*bytes, file.string());
+    } catch (const toml::parse_error& error) {
+        return Error{fmt::format("{}:{}", file.string(), error.source().begin.line),
+                     std::string("is not TOML: ") + std::string(error.description())};
+    }
+}
+
+TomlReader::TomlReader(const toml::table& table, std::string path, std::span<const std::string_view> known,
+                       std::span<const std::string_view> expected, Faults& faults)
     : table_(table), path_(std::move(path)), faults_(faults)
 {
     for (const auto& [key, value] : table) {
-        if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
+        if (std::find(known.begin(), known.end(), key.str()) == known.end())
             faults_.add(key.source(), fmt::format("{}{}: unknown key, expected {}", path_, key.str(),
-                                                  fmt::join(keys, ", ")));
+                                                  fmt::join(expected, ", ")));
     }
 }
 
@@ -141,6 +156,73 @@ bool TomlReader::numbers(std::string_view key, const Range& range, std::span<dou
         values[i] = *value;
     }
     return true;
+}
+
+bool TomlReader::append_numbers(std::string_view key, const toml::node& node, const Range& range,
+                                std::size_t count, const std::string& at, std::vector<double>& values)
+{
+    const toml::array* array = node.as_array();
+    if (!array || array->size() != count) {
+        fault(key, fmt::format("{} is {}, expected [{} numbers]", at, shown(node), count));
+        return false;
+    }
+    for (const toml::node& element : *array) {
+        const auto value = element.is_number() ? element.value<double>() : std::nullopt;
+        if (!value || !range.contains(*value)) {
+            fault(key, fmt::format("{} has {}, expected {}", at, shown(element), range.text));
+            return false;
+        }
+        values.push_back(*value);
+    }
+    return true;
+}
+
+std::vector<double> TomlReader::number_list(std::string_view key, const Range& range)
+{
+    const toml::node* node = table_.get(key);
+    if (!node)
+        return {};
+    if (!node->is_array() || node->as_array()->empty()) {
+        fault(key, fmt::format("is {}, expected [numbers]", shown(*node)));
+        return {};
+    }
+    std::vector<double> values(node->as_array()->size());
+    return numbers(key, range, values) ? values : std::vector<double>{};
+}
+
+std::vector<double> TomlReader::number_net(std::string_view key, const Range& range, std::size_t parts,
+                                           std::size_t& columns)
+{
+    const toml::node* node = table_.get(key);
+    if (!node)
+        return {};
+    const toml::array* rows = node->as_array();
+    const toml::array* first = rows && !rows->empty() ? rows->get(0)->as_array() : nullptr;
+    if (!first || first->empty()) {
+        fault(key, fmt::format("is {}, expected an array of rows", shown(*node)));
+        return {};
+    }
+    columns = first->size();
+    std::vector<double> values;
+    for (std::size_t r = 0; r < rows->size(); ++r) {
+        const std::string at = fmt::format("row {}", r + 1);
+        if (parts == 1) {
+            if (!append_numbers(key, *rows->get(r), range, columns, at, values))
+                return {};
+            continue;
+        }
+        const toml::array* row = rows->get(r)->as_array();
+        if (!row || row->size() != columns) {
+            fault(key,
+                  fmt::format("{} is {}, expected {} points like row 1", at, shown(*rows->get(r)), columns));
+            return {};
+        }
+        for (std::size_t c = 0; c < columns; ++c)
+            if (!append_numbers(key, *row->get(c), range, parts, fmt::format("{}, point {}", at, c + 1),
+                                values))
+                return {};
+    }
+    return values;
 }
 
 const toml::table* TomlReader::table(std::string_view key)

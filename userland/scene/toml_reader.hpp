@@ -4,11 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <toml++/toml.h>
 
@@ -31,12 +33,21 @@ class Faults {
     std::uint32_t line_ = 0; ///< of first_
 };
 
+/// Errors: what load_bytes() says, or "file:line: is not TOML: why".
+Result<toml::table> parse_toml(const std::filesystem::path& file);
+
 /// A view of a table; every getter returns nullopt when the key is absent or at fault (then in Faults).
 class TomlReader {
   public:
     /// `path` stands before keys in messages ("material.soft."), `keys` is every key that may be there.
     TomlReader(const toml::table& table, std::string path, std::initializer_list<std::string_view> keys,
-               Faults& faults);
+               Faults& faults)
+        : TomlReader(table, std::move(path), {keys.begin(), keys.size()}, {keys.begin(), keys.size()}, faults)
+    {
+    }
+    /// `known` is every key that may be there, `expected` what a message names instead of another.
+    TomlReader(const toml::table& table, std::string path, std::span<const std::string_view> known,
+               std::span<const std::string_view> expected, Faults& faults);
 
     [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
     /// Line of the key's value, or of the table when the key is absent.
@@ -50,6 +61,13 @@ class TomlReader {
     std::optional<bool> flag(std::string_view key);
     /// Exactly values.size() numbers; false when absent or at fault.
     bool numbers(std::string_view key, const Range& range, std::span<double> values);
+    /// As many numbers as there are, at least one; empty when absent or at fault.
+    std::vector<double> number_list(std::string_view key, const Range& range);
+    /// An array of `rows` arrays of as many values each; a value is a number or, with `parts` above 1, an
+    /// array of that many. Row by row, value by value; empty when absent or at fault. `columns` is what was
+    /// found.
+    std::vector<double> number_net(std::string_view key, const Range& range, std::size_t parts,
+                                   std::size_t& columns);
     /// A sub-table, or nullptr.
     const toml::table* table(std::string_view key);
 
@@ -57,6 +75,10 @@ class TomlReader {
     void fault(std::string_view key, const std::string& what);
 
   private:
+    /// Appends the numbers of an array of `count`; `at` names it in messages ("number 3", "row 2").
+    bool append_numbers(std::string_view key, const toml::node& node, const Range& range, std::size_t count,
+                        const std::string& at, std::vector<double>& values);
+
     const toml::table& table_;
     std::string path_;
     Faults& faults_;

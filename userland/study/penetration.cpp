@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -12,7 +11,6 @@
 #include "base/vector.hpp"
 #include "device/device.hpp"
 #include "feeder/feeder.hpp"
-#include "feeder/level_choice.hpp"
 #include "feeder/servo_choice.hpp"
 
 namespace phantom::study {
@@ -41,29 +39,16 @@ Vec3 from_micro(const Integer (&v)[3])
             1e-6 * static_cast<double>(v[2])};
 }
 
-std::vector<feeder::DetailLevel> details(const PenetrationSurface& surface)
-{
-    std::vector<feeder::DetailLevel> out;
-    for (const auto& level : surface.levels())
-        out.push_back(level->detail);
-    return out;
-}
-
 class Run {
   public:
     Run(const PenetrationSurface& surface, const PenetrationOptions& options, device::Device device)
-        : surface_(surface), options_(options), device_(std::move(device)), choice_(details(surface))
+        : surface_(surface),
+          options_(options),
+          device_(std::move(device)),
+          feeder_(surface.scene(), surface.tree(), device_, feeder_options(surface, options))
     {
-        for (std::size_t number = 0; number < surface.levels().size(); ++number) {
-            const SurfaceLevel& level = *surface.levels()[number];
-            feeders_.push_back(std::make_unique<feeder::Feeder>(
-                level.scene, level.tree, device_,
-                feeder::FeederOptions{.budget = surface.budget(),
-                                      .grow_budget = false,
-                                      .level = static_cast<std::uint32_t>(number),
-                                      .level_error_mm = level.detail.error_mm}));
-        }
-        result_.level_ticks.resize(feeders_.size());
+        feeder_.use(surface.levels());
+        result_.level_ticks.resize(surface.levels()->size());
     }
 
     Result<PenetrationResult> run()
@@ -81,34 +66,26 @@ class Run {
     }
 
   private:
-    /// The level for the next set, by what the tick before knew.
-    std::size_t choose()
+    static feeder::FeederOptions feeder_options(const PenetrationSurface& surface,
+                                                const PenetrationOptions& options)
     {
-        if (options_.timely)
-            return 0;
-        const phantom_status status = device_.status();
-        const Vec3 velocity = from_micro(status.velocity_nm_s);
-        const Vec3 deep = seen_ - proxy_;
-        feeder::LevelDemand demand;
-        demand.speed_mm_s = length(velocity);
-        demand.delay_s = options_.feed_every / options_.path.rate_hz;
-        demand.contact_radius_mm = soft_radius_mm;
-        if (inside_) {
-            demand.depth_mm = length(deep);
-            demand.dive_mm_s = dot(velocity, unit(deep));
-        }
-        return choice_.choose(demand);
+        feeder::FeederOptions out;
+        out.budget = surface.budget();
+        out.grow_budget = false;
+        out.rate_hz = options.path.rate_hz / options.feed_every;
+        if (options.timely)
+            out.level = 0;
+        return out;
     }
 
     Status feed(const Vec3& tip)
     {
         const Vec3& at = options_.timely ? tip : seen_;
-        const std::size_t level = choose();
-        const Result<feeder::FeedReport> report = feeders_[level]->feed(at, inside_ ? proxy_ : at, inside_);
+        const Result<feeder::FeedReport> report = feeder_.feed(at, inside_ ? proxy_ : at, inside_);
         if (!report)
             return report.error();
-        result_.level_changes += inside_ && level != level_;
-        level_ = level;
+        result_.level_changes += inside_ && report->level != level_;
+        level_ = report->level;
         result_.patches_max = std::max(result_.patches_max, report->patches);
         return success();
     }
@@ -164,7 +141,7 @@ class Run {
         if (nearest.distance_mm < sure_mm)
             return;
         // What lies between two levels is inside for the one and outside for the other.
-        const double doubt_mm = choice_.level(level_).error_mm + sure_mm;
+        const double doubt_mm = surface_.levels()->error_mm(level_) + sure_mm;
         if (!nearest.inside) {
             ++result_.outside;
             result_.kept += inside_ && nearest.distance_mm > doubt_mm;
@@ -186,9 +163,8 @@ class Run {
     const PenetrationSurface& surface_;
     const PenetrationOptions& options_;
     device::Device device_;
-    std::vector<std::unique_ptr<feeder::Feeder>> feeders_; ///< one per level
-    feeder::LevelChoice choice_;
-    std::size_t level_ = 0;           ///< of the set in use
+    feeder::Feeder feeder_;
+    std::uint32_t level_ = 0;         ///< of the set in use
     Vec3 seen_{}, proxy_{}, force_{}; ///< after the tick before
     bool inside_ = false;
     std::vector<double> errors_;

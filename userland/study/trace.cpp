@@ -59,7 +59,12 @@ class Tracer {
         if (Status status = device_->set_model(model_); !status)
             return status;
         tree_.emplace(options_.feeder.all ? fdh::SceneTree<14>() : scene::build_tree<14>(scene_));
-        feeder_.emplace(scene_, *tree_, *device_, options_.feeder);
+        feeder::FeederOptions feeding = options_.feeder;
+        feeding.rate_hz = static_cast<double>(rate_hz_) / options_.feed_every;
+        feeding.level = options_.levels.fixed;
+        feeder_.emplace(scene_, *tree_, *device_, feeding);
+        if (options_.levels.on && !feeding.all)
+            use_levels(feeding);
         return success();
     }
 
@@ -81,6 +86,18 @@ class Tracer {
     bool wants_double() const
     {
         return options_.servo.arith.value_or(scene_.servo.arith.value_or("")) == "double";
+    }
+
+    void use_levels(const feeder::FeederOptions& feeding)
+    {
+        scene::LevelOptions wanted;
+        wanted.budget = feeding.budget;
+        wanted.edge_max_mm = feeder::edge_max_mm(feeding);
+        const auto levels =
+            std::make_shared<const scene::Levels>(scene::build_levels(scene_, *tree_, wanted));
+        for (std::size_t level = 0; level < levels->size(); ++level)
+            run_.summary.level_error_mm.push_back(levels->error_mm(level));
+        feeder_->use(levels);
     }
 
     /// 0 = what the module takes by itself.
@@ -202,6 +219,9 @@ class Tracer {
         sum.refused = status.refused;
         sum.saturated = status.saturated;
         sum.faults = device::fault_names(status.faults);
+        const feeder::Feeder::Totals fed = feeder_->totals();
+        sum.level_sets = fed.level_sets;
+        sum.level_changes = fed.level_changes;
         sum.query_median_us = median_of(query_us_);
         sum.tick_median_ns = median_of(tick_ns_);
     }

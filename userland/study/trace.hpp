@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/result.hpp"
 #include "feeder/feeder.hpp"
@@ -18,7 +19,10 @@ struct TraceOptions {
     scene::ServoSettings servo; ///< word by word over the scene's [servo]
     feeder::FeederOptions feeder;
     std::uint32_t feed_every = 1; ///< a set before every K-th tick
-    bool limits = false;          ///< clamp, slew, ramp, speed, stall and age of sets as on a real device
+    /// Of detail. A set knows the tip of its tick here, so the finest level does for any speed: they are for
+    /// seeing what they cost.
+    scene::LevelWish levels{.on = false};
+    bool limits = false; ///< clamp, slew, ramp, speed, stall and age of sets as on a real device
     std::uint32_t isa = PHANTOM_ISA_NONE;
     std::function<void(double)> progress{};
 };
@@ -30,6 +34,9 @@ struct TraceSummary {
     std::uint64_t uncovered_ticks = 0; ///< no set covered the tip: the force is not the mesh's
     std::uint64_t sets = 0, refused = 0, saturated = 0;
     std::uint32_t patches_max = 0;
+    std::vector<std::uint64_t> level_sets; ///< sets of each level
+    std::uint64_t level_changes = 0;
+    std::vector<double> level_error_mm; ///< of each level from the mesh
     double force_max_n = 0, force_step_max_n = 0;
     double query_median_us = 0, tick_median_ns = 0;
     std::string faults; ///< "none"

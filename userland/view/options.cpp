@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "scene/cache.hpp"
+
 namespace phantom::view {
 
 namespace {
@@ -73,7 +75,7 @@ std::string parse_camera(const std::string& text, Options& options)
     return {};
 }
 
-void add_scene_options(CLI::App& app, Options& options, std::string& prepare)
+void add_scene_options(CLI::App& app, Options& options, std::string& prepare, bool& use_cache)
 {
     app.add_option("scene", options.scene, "mesh or scene file")->required()->type_name("SCENE");
     app.add_option("--unit", options.load.unit, "of the file's coordinates: mm, m, cm, in, um");
@@ -87,6 +89,7 @@ void add_scene_options(CLI::App& app, Options& options, std::string& prepare)
         ->check(CLI::Range(0.0, 180.0));
     app.add_option("--prepare", prepare, "full, or none: faces and normals as the file gives them")
         ->check(CLI::IsMember({"full", "none"}));
+    app.add_flag("!--no-cache", use_cache, "prepare the meshes anew");
 }
 
 void add_live_options(CLI::App& app, Options& options)
@@ -108,7 +111,8 @@ std::variant<Options, int> parse_options(int argc, char** argv)
     std::string size, camera, prepare = "full";
     CLI::App app{about, "fdhview"};
     app.footer(keys);
-    add_scene_options(app, options, prepare);
+    bool use_cache = true;
+    add_scene_options(app, options, prepare, use_cache);
     add_live_options(app, options);
     auto* trace = app.add_option("--trace", options.trace, "show a recorded trace (CSV of fdhctl trace)");
     app.add_option("--at-row", options.at_row, "row of the trace to show, from 0; default: the largest force")
@@ -134,6 +138,8 @@ std::variant<Options, int> parse_options(int argc, char** argv)
         return 2;
     }
     options.load.prepare.full = prepare == "full";
+    if (use_cache)
+        options.load.cache = scene::cache_directory();
     return options;
 }
 

@@ -20,9 +20,9 @@ constexpr double lift_part = 0.03; ///< of the contact radius: no flicker, and n
 
 } // namespace
 
-SelectedTriangles::SelectedTriangles(const scene::Scene& scene) : scene_(scene)
+SelectedTriangles::SelectedTriangles()
 {
-    show({});
+    show({}, {});
 }
 
 vtkActor* SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, double edge_width) const
@@ -44,19 +44,21 @@ vtkActor* SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, doubl
     return actor;
 }
 
-void SelectedTriangles::show(std::span<const fdh::Hit> hits)
+void SelectedTriangles::show(std::span<const fdh::Hit> hits, const scene::Scene& of)
 {
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> faces;
     for (const fdh::Hit& hit : hits) {
-        if (hit.object >= scene_.objects.size())
+        if (hit.object >= of.objects.size())
             continue;
-        const scene::Object& object = scene_.objects[hit.object];
+        const scene::Object& object = of.objects[hit.object];
+        if (hit.triangle >= object.mesh.faces.size())
+            continue;
         // They lie in the surface: draw them a hair above it.
-        const double lift_mm = lift_part * scene_.materials[object.material].radius_mm;
+        const double lift_mm = lift_part * of.materials[object.material].radius_mm;
         faces->InsertNextCell(3);
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3& vertex = object.mesh.vertices[object.mesh.faces.at(hit.triangle)[i]];
+            const Vec3& vertex = object.mesh.vertices[object.mesh.faces[hit.triangle][i]];
             const Vec3& normal = object.mesh.normals[object.mesh.face_normals[hit.triangle][i]];
             const Vec3 corner = to_world(object.pose, vertex + lift_mm * normal);
             faces->InsertCellPoint(points->InsertNextPoint(corner.data()));

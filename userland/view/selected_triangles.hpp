@@ -17,12 +17,12 @@ namespace phantom::view {
 
 class SelectedTriangles {
   public:
-    explicit SelectedTriangles(const scene::Scene& scene);
+    SelectedTriangles();
 
     /// Adds them to a renderer; edge_width in pixels. Returns what the renderer draws, and owns.
     vtkActor* add_to(vtkRenderer* renderer, double opacity, double edge_width) const;
-    /// Replaces the selection.
-    void show(std::span<const fdh::Hit> hits);
+    /// Replaces the selection. `of` is what the hits are of: the scene, or a level of detail of it.
+    void show(std::span<const fdh::Hit> hits, const scene::Scene& of);
 
     [[nodiscard]] std::size_t count() const { return count_; }
     /// Distance in mm from `centre` within which half of the selection's corners lie: its size to the
@@ -33,7 +33,6 @@ class SelectedTriangles {
     [[nodiscard]] Vec3 facing(const Vec3& otherwise) const;
 
   private:
-    const scene::Scene& scene_;
     vtkNew<vtkPolyData> triangles_;
     std::size_t count_ = 0;
 };

@@ -59,7 +59,7 @@ Stage::Stage(const scene::Scene& scene, int width, int height, bool offscreen)
     : scene_(scene),
       oversampling_(offscreen ? picture_oversampling : 1),
       surfaces_(scene),
-      selected_(scene),
+      selected_(),
       whole_probe_(whole_, 1),
       spot_probe_(spot_, 0.28),
       chart_(graph_, ForceChart::Lines::norm),
@@ -190,12 +190,12 @@ void Stage::size_probes(const Touch& touch, double radius_mm)
     whole_probe_.show(touch, sizes);
 }
 
-void Stage::show(const Touch& touch, std::span<const fdh::Hit> selected, const Vec3& normal, double radius_mm,
-                 double blend)
+void Stage::show(const Touch& touch, std::span<const fdh::Hit> selected, const scene::Scene& of,
+                 const Vec3& normal, double radius_mm, double blend)
 {
     touch_ = touch;
     radius_mm_ = radius_mm;
-    selected_.show(selected);
+    selected_.show(selected, of);
     // Of a patch that is small in the whole picture the edges would leave nothing to see.
     constexpr double large_patch = 0.06;
     selected_in_whole_->GetProperty()->SetEdgeVisibility(selected_.reach_mm(touch.proxy_mm) >

@@ -47,8 +47,8 @@ Result<Moment> moment_of(const Trace& trace, const Options& options, const scene
     moment.touch = trace.rows[moment.row];
     const auto tree = scene::build_tree<14>(scene);
     tree.nearest(moment.touch.query_centre_mm(), selected_triangles, search_radius_mm, moment.nearest);
-    SelectedTriangles selected(scene);
-    selected.show(moment.nearest.hits);
+    SelectedTriangles selected;
+    selected.show(moment.nearest.hits, scene);
     moment.normal = outward_normal(moment.touch, selected);
     moment.radius_mm = scene.max_radius_mm();
     if (!moment.nearest.hits.empty())
@@ -123,7 +123,7 @@ Status run_trace_view(const Options& options)
         stage.set_full_scale(max_force_n);
         stage.set_colour_bar(max_force_n);
         add_path(stage.whole(), *trace, 0.0036 * stage.extent_mm(), max_force_n);
-        stage.show(moment->touch, moment->nearest.hits, moment->normal, moment->radius_mm, 1);
+        stage.show(moment->touch, moment->nearest.hits, *scene, moment->normal, moment->radius_mm, 1);
         stage.set_panel(panel_of(*scene, *trace, *moment));
         stage.chart().mark(moment->touch.time_s);
         stage.chart().show(history, history.front().time_s, history.back().time_s, max_force_n);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Building: hard inputs, refused inputs, memory, threads.
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
 #include <stdexcept>
 
+#include "fdh/layout.hpp"
 #include "oracle.hpp"
 
 namespace phantom::fdh::test {
@@ -173,6 +177,70 @@ TEST(BuildTest, QueryVisitsFewLeaves)
     tree.nearest({0.5, 0.6, 0.7}, 64, infinity, found);
     EXPECT_LE(found.counts.leaves, 150u) << "of about 4700";
     EXPECT_GE(found.counts.triangles, 64u);
+}
+
+/// Bytes of an image, with a place of their own.
+struct Copy {
+    explicit Copy(const TreeImage& of) : image(of)
+    {
+        nodes = aligned(of.nodes);
+        leaves = aligned(of.leaves);
+        image.nodes = {nodes.get(), of.nodes.size()};
+        image.leaves = {leaves.get(), of.leaves.size()};
+    }
+    using Bytes = std::unique_ptr<std::byte, decltype(&std::free)>;
+    static Bytes aligned(std::span<const std::byte> bytes)
+    {
+        Bytes copy(static_cast<std::byte*>(std::aligned_alloc(image_alignment, bytes.size())), &std::free);
+        std::memcpy(copy.get(), bytes.data(), bytes.size());
+        return copy;
+    }
+    TreeImage image;
+    Bytes nodes{nullptr, &std::free}, leaves{nullptr, &std::free};
+};
+
+TEST(BuildTest, OpenedFromItsImageItAnswersTheSame)
+{
+    const Mesh mesh = sphere(3, 40);
+    const auto built = TriangleTree<14>::build(mesh.view());
+    auto copy = std::make_shared<Copy>(built.image());
+    const TreeImage image = copy->image;
+    const auto opened = TriangleTree<14>::open(image, std::move(copy)); // which lives on in it
+    ASSERT_TRUE(opened);
+    EXPECT_EQ(opened->triangles(), built.triangles());
+    EXPECT_EQ(opened->hull(), built.hull());
+    Nearest a, b;
+    for (int i = 0; i < 100; i++) {
+        const Point p = {std::sin(i) * 40, std::cos(1.3 * i) * 40, std::sin(2.1 * i) * 40};
+        built.nearest(p, 16, 100, a);
+        opened->nearest(p, 16, 100, b);
+        EXPECT_EQ(a.coverage, b.coverage);
+        ASSERT_EQ(a.hits.size(), b.hits.size());
+        for (std::size_t h = 0; h < a.hits.size(); h++)
+            EXPECT_EQ(a.hits[h].triangle, b.hits[h].triangle);
+    }
+}
+
+TEST(BuildTest, AnImageThatIsNoneIsRefused)
+{
+    const auto tree = TriangleTree<14>::build(sphere(3, 40).view());
+    const auto refused = [&](auto&& spoil) {
+        Copy copy(tree.image());
+        spoil(copy.image, reinterpret_cast<Node<14>*>(copy.nodes.get()),
+              reinterpret_cast<Leaf*>(copy.leaves.get()));
+        return !TriangleTree<14>::open(copy.image, nullptr);
+    };
+    using Nodes = Node<14>*;
+    EXPECT_FALSE(refused([](TreeImage&, Nodes, Leaf*) {}));
+    EXPECT_TRUE(refused([](TreeImage& i, Nodes, Leaf*) { i.nodes = i.nodes.first(i.nodes.size() - 1); }));
+    EXPECT_TRUE(refused([](TreeImage& i, Nodes, Leaf*) { i.nodes = {}; }));
+    EXPECT_TRUE(refused([](TreeImage& i, Nodes, Leaf*) { i.leaves = i.leaves.first(sizeof(Leaf)); }));
+    EXPECT_TRUE(refused([](TreeImage& i, Nodes, Leaf*) { i.leaves = i.leaves.subspan(8); }));
+    EXPECT_TRUE(refused([](TreeImage& i, Nodes, Leaf*) { i.step = std::nan(""); }));
+    EXPECT_TRUE(refused([](TreeImage& i, Nodes, Leaf*) { i.triangles = 10; }));
+    EXPECT_TRUE(refused([](TreeImage&, Nodes n, Leaf*) { n[1].child[0] = 1; }));        // itself
+    EXPECT_TRUE(refused([](TreeImage&, Nodes n, Leaf*) { n[0].child[0] = 1U << 20; })); // not there
+    EXPECT_TRUE(refused([](TreeImage&, Nodes, Leaf* l) { l[3].triangle[0] = 1U << 20; }));
 }
 
 } // namespace phantom::fdh::test

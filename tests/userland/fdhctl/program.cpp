@@ -79,6 +79,7 @@ Program::Program()
     char name[] = "/tmp/phantom_fdhctl_XXXXXX";
     folder_ = ::mkdtemp(name);
     ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
+    ::setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
 }
 
 Program::~Program()

@@ -100,27 +100,30 @@ TEST(LevelChoice, InsideTheSetOfThatReachHoldsTipAndProxyUntilTheNext)
 TEST(LevelChoice, ReachOfAFlatGridIsTheDiscOfItsBudget)
 {
     // squares of 1 mm, two triangles each; the rim does not end the surface sooner than the budget
-    mesh::Mesh grid;
+    mesh::Soup soup;
     constexpr unsigned side = 60;
     for (unsigned y = 0; y <= side; ++y)
         for (unsigned x = 0; x <= side; ++x)
-            grid.vertices.push_back({double(x), double(y), 0});
+            soup.vertices.push_back({double(x), double(y), 0});
     for (unsigned y = 0; y < side; ++y) {
         for (unsigned x = 0; x < side; ++x) {
             const unsigned v = y * (side + 1) + x;
-            grid.faces.push_back({v, v + 1, v + side + 2});
-            grid.faces.push_back({v, v + side + 2, v + side + 1});
+            soup.faces.push_back({v, v + 1, v + side + 2});
+            soup.faces.push_back({v, v + side + 2, v + side + 1});
         }
     }
+    mesh::Mesh grid;
+    grid.vertices = std::move(soup.vertices);
+    grid.faces = std::move(soup.faces);
     scene::Scene scene;
     scene.materials.push_back({"any", 1, 1, {}});
     scene.objects.emplace_back();
     scene.objects[0].mesh = grid;
     const fdh::SceneTree<14> tree = scene::build_tree<14>(scene);
-    const double reach = feeder::measure_reach_mm(grid, tree.tree(0), 64);
+    const double reach = scene::measure_coverage(scene, tree, 64).p1_mm;
     EXPECT_LT(reach, std::sqrt(0.5 * 64 / M_PI)); // the disc of their area
     EXPECT_GT(reach, 0.6 * std::sqrt(0.5 * 64 / M_PI));
-    EXPECT_GT(feeder::measure_reach_mm(grid, tree.tree(0), 256), 1.8 * reach);
+    EXPECT_GT(scene::measure_coverage(scene, tree, 256).p1_mm, 1.8 * reach);
 }
 
 } // namespace

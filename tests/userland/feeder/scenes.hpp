@@ -23,23 +23,25 @@ inline void connect(mesh::Mesh& mesh)
     for (std::uint32_t face = 0; face < mesh.faces.size(); ++face)
         for (int edge = 0; edge < 3; ++edge)
             owner[{mesh.faces[face][edge], mesh.faces[face][(edge + 1) % 3]}] = face;
-    mesh.neighbours.assign(mesh.faces.size(), {mesh::no_neighbour, mesh::no_neighbour, mesh::no_neighbour});
+    std::vector<mesh::Triple> neighbours(mesh.faces.size(),
+                                         {mesh::no_neighbour, mesh::no_neighbour, mesh::no_neighbour});
     for (std::uint32_t face = 0; face < mesh.faces.size(); ++face)
         for (int edge = 0; edge < 3; ++edge)
             if (auto it = owner.find({mesh.faces[face][(edge + 1) % 3], mesh.faces[face][edge]});
                 it != owner.end())
-                mesh.neighbours[face][edge] = it->second;
+                neighbours[face][edge] = it->second;
+    mesh.neighbours = std::move(neighbours);
 }
 
 /// Latitude-longitude sphere round the origin with exact radial normals.
 inline mesh::Mesh sphere(double radius_mm, int rings, int sectors)
 {
-    mesh::Mesh mesh;
+    mesh::Soup soup;
     const auto add = [&](double polar, double turn) {
         const Vector n{std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
-        mesh.normals.push_back(n);
-        mesh.vertices.push_back({radius_mm * n[0], radius_mm * n[1], radius_mm * n[2]});
-        return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+        soup.normals.push_back(n);
+        soup.vertices.push_back({radius_mm * n[0], radius_mm * n[1], radius_mm * n[2]});
+        return static_cast<std::uint32_t>(soup.vertices.size() - 1);
     };
     const std::uint32_t north = add(0, 0), south = add(std::numbers::pi, 0);
     const auto at = [&](int ring, int sector) {
@@ -49,13 +51,14 @@ inline mesh::Mesh sphere(double radius_mm, int rings, int sectors)
         for (int sector = 0; sector < sectors; ++sector)
             add(std::numbers::pi * ring / rings, 2 * std::numbers::pi * sector / sectors);
     for (int sector = 0; sector < sectors; ++sector) {
-        mesh.faces.push_back({north, at(1, sector), at(1, sector + 1)});
-        mesh.faces.push_back({south, at(rings - 1, sector + 1), at(rings - 1, sector)});
+        soup.faces.push_back({north, at(1, sector), at(1, sector + 1)});
+        soup.faces.push_back({south, at(rings - 1, sector + 1), at(rings - 1, sector)});
         for (int ring = 1; ring + 1 < rings; ++ring) {
-            mesh.faces.push_back({at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1)});
-            mesh.faces.push_back({at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1)});
+            soup.faces.push_back({at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1)});
+            soup.faces.push_back({at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1)});
         }
     }
+    mesh::Mesh mesh{std::move(soup.vertices), std::move(soup.faces), std::move(soup.normals), {}, {}};
     mesh.face_normals = mesh.faces;
     connect(mesh);
     return mesh;

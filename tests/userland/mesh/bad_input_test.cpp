@@ -106,16 +106,13 @@ TEST(MeshReadBad, TruncatedOff)
         ASSERT_NE(error_of("a.off", whole.substr(0, size)), "") << "cut to " << size;
 }
 
-TEST(MeshReadBad, PlyNotANumberInfiniteOrHuge)
+TEST(MeshReadBad, PlyHugeOrNotANumberInText)
 {
     struct Case {
         double value;
         const char* what;
     };
-    for (const Case& bad : {Case{std::numeric_limits<double>::quiet_NaN(), "nan"},
-                            Case{std::numeric_limits<double>::infinity(), "inf"},
-                            Case{-std::numeric_limits<double>::infinity(), "-inf"}, Case{1.1e9, "1100000000"},
-                            Case{-1e300, "-1e+300"}}) {
+    for (const Case& bad : {Case{1.1e9, "1100000000"}, Case{-1e300, "-1e+300"}}) {
         Soup soup = cube();
         soup.vertices[5][1] = bad.value;
         for (const char* format : {"binary_little_endian", "binary_big_endian"})
@@ -137,6 +134,7 @@ TEST(MeshReadBad, NotANumberOrHugeInTheOtherFormats)
     expect_error("a.stl", stl_text_of(soup), ": vertex ", "expected a finite number");
     soup.vertices[5][2] = std::numeric_limits<double>::quiet_NaN();
     expect_error("a.obj", obj_of(soup), ":7: ", "expected \"v X Y Z\"");
+    expect_error("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ns two\nf 1 2 3\n", ":4: ", "expected \"s off\"");
     expect_error("a.off", off_of(soup), ":8: ", "expected a vertex");
     expect_error("a.stl", stl_text_of(soup), ":", "in numbers");
     expect_error("a.stl", stl_binary_of(soup), ": face ", "z of corner 1 is nan");

@@ -12,6 +12,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -116,12 +117,32 @@ inline Soup unwelded(const Soup& soup)
     return out;
 }
 
+/// What a mesh came to, to be prepared once more.
+inline Soup soup_of(const Mesh& mesh)
+{
+    Soup soup;
+    soup.vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
+    soup.faces.assign(mesh.faces.begin(), mesh.faces.end());
+    soup.normals.assign(mesh.normals.begin(), mesh.normals.end());
+    soup.face_normals.assign(mesh.face_normals.begin(), mesh.face_normals.end());
+    return soup;
+}
+
+/// Adds another part. Without normals.
+inline void append(Soup& soup, const Soup& part)
+{
+    const auto base = static_cast<std::uint32_t>(soup.vertices.size());
+    soup.vertices.insert(soup.vertices.end(), part.vertices.begin(), part.vertices.end());
+    for (const Triple& f : part.faces)
+        soup.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
+}
+
 inline void turn(Soup& soup, std::size_t face)
 {
     std::swap(soup.faces[face][1], soup.faces[face][2]);
 }
 
-inline double signed_volume(const std::vector<Vec3>& vertices, const std::vector<Triple>& faces)
+inline double signed_volume(std::span<const Vec3> vertices, std::span<const Triple> faces)
 {
     double sum = 0;
     for (const Triple& f : faces)
@@ -129,7 +150,7 @@ inline double signed_volume(const std::vector<Vec3>& vertices, const std::vector
     return sum / 6;
 }
 
-inline double area(const std::vector<Vec3>& vertices, const std::vector<Triple>& faces)
+inline double area(std::span<const Vec3> vertices, std::span<const Triple> faces)
 {
     double sum = 0;
     for (const Triple& f : faces)
@@ -148,7 +169,7 @@ inline Vec3 normal_of(const Mesh& mesh, std::size_t face)
 
 /// Edges (low vertex, high vertex) with the faces on them, found the slow and plain way.
 inline std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>>
-edges_of(const std::vector<Triple>& faces)
+edges_of(std::span<const Triple> faces)
 {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
     for (std::uint32_t f = 0; f < faces.size(); ++f) {

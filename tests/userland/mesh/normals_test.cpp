@@ -156,6 +156,44 @@ TEST(MeshNormals, BadFileNormalsAreRepairedAndCounted)
     }
 }
 
+/// Solid and normals inside out together: the formula's normals survive, turned over.
+TEST(MeshNormals, FileNormalsOfASolidInsideOutAreTurnedWithIt)
+{
+    Soup soup = globe(50, 12, 8);
+    for (const Vec3& v : soup.vertices)
+        soup.normals.push_back(scaled(normalized(v), -1));
+    for (std::size_t f = 0; f < soup.faces.size(); ++f)
+        turn(soup, f);
+    soup.face_normals = soup.faces;
+    const Prepared out = prepared(soup);
+    EXPECT_EQ(out.report.normals_repaired, 3 * soup.faces.size());
+    for (std::size_t f = 0; f < out.mesh.faces.size(); ++f) {
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_EQ(corner_normal(out.mesh, f, i), normalized(out.mesh.vertices[out.mesh.faces[f][i]]));
+    }
+}
+
+TEST(MeshNormals, SmoothingGroupsDecideWhereBothFacesHaveOne)
+{
+    Soup soup = cube(50);
+    soup.smoothing.assign(12, 7);
+    EXPECT_EQ(prepared(soup).report.crease_edges, 0U); // however sharp
+    soup.smoothing[0] = soup.smoothing[1] = 8;         // one side
+    EXPECT_EQ(prepared(soup).report.crease_edges, 4U);
+    soup.smoothing.assign(12, 0); // none: by the angle
+    EXPECT_EQ(prepared(soup).report.crease_edges, 12U);
+    EXPECT_EQ(prepared(soup, {.crease_deg = 180}).report.crease_edges, 0U);
+    soup.smoothing.assign(12, 1);
+    soup.smoothing[0] = 2; // across its own side's diagonal too
+    EXPECT_EQ(prepared(soup, {.crease_deg = 180}).report.crease_edges, 3U);
+    // and they go with their faces through every step
+    soup = cube(50);
+    soup.smoothing.assign(12, 7);
+    soup.faces.insert(soup.faces.begin(), {0, 0, 1});
+    soup.smoothing.insert(soup.smoothing.begin(), 3);
+    EXPECT_EQ(prepared(soup, {.split_mm = 40}).report.crease_edges, 0U);
+}
+
 TEST(MeshNormals, NothingPassesOverANonManifoldEdge)
 {
     // Three half-planes that meet in the y axis, 120 degrees apart.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Reading: the same cube and sphere through every format, exact to the last bit.
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "mesh/read.hpp"
@@ -127,6 +129,33 @@ TEST(MeshRead, ObjNegativeIndicesCommentsGroupsLinesAndContinuations)
     ASSERT_EQ(got.faces.size(), 2U);
     EXPECT_EQ(got.faces[0], (Triple{0, 1, 2}));
     EXPECT_EQ(got.faces[1], (Triple{1, 3, 2}));
+}
+
+TEST(MeshRead, ObjSmoothingGroups)
+{
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n";
+    const Soup got = read_back("a.obj", vertices + "f 1 2 3\ns 4\nf 2 4 3\nf 2 5 6 4\ns off\nf 1 3 2\n");
+    EXPECT_EQ(got.smoothing, (std::vector<std::uint32_t>{0, 4, 4, 4, 0}));
+    EXPECT_TRUE(read_back("a.obj", vertices + "s off\nf 1 2 3\ns 0\nf 2 4 3\n").smoothing.empty());
+}
+
+TEST(MeshRead, PlyVerticesThatAreNoNumberAreDroppedWithTheirFaces)
+{
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+        Soup soup = cube();
+        soup.vertices[5][1] = bad;
+        for (const char* format : {"binary_little_endian", "binary_big_endian"}) {
+            const Soup got = read_back("a.ply", ply_of(soup, format));
+            ASSERT_EQ(got.faces.size(), 12U);
+            for (const bool full : {true, false}) {
+                const auto out = prepare(got, {.full = full}, "a.ply");
+                ASSERT_TRUE(out.ok());
+                EXPECT_EQ(out->report.faces_nonfinite, 4U);
+                EXPECT_EQ(out->report.faces, 8U);
+            }
+        }
+    }
 }
 
 TEST(MeshRead, PolygonsAreFannedRoundTheirFirstCorner)

@@ -20,7 +20,7 @@ bool has_t_junction(const Mesh& mesh)
     for (const auto& [edge, faces] : edges_of(mesh.faces)) {
         const Vec3 &a = mesh.vertices[edge.first], &b = mesh.vertices[edge.second];
         for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
-            if (v == edge.first || v == edge.second)
+            if (mesh.vertices[v] == a || mesh.vertices[v] == b)
                 continue;
             const double around = distance(a, mesh.vertices[v]) + distance(mesh.vertices[v], b);
             if (around - distance(a, b) < 1e-9)

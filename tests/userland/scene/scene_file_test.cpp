@@ -54,11 +54,14 @@ TEST(SceneFile, SoundFileLoads)
 TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
 {
     EXPECT_EQ(error_of("units = \"mm\"\n[[object]]\nmesh = \"part.obj\"\n"),
-              "a.toml:1: units: unknown key, expected unit, object, material, device, servo");
+              "a.toml:1: units: unknown key, expected unit, levels, object, material, device, servo");
     EXPECT_EQ(
         in_object("colour = \"red\"\n"),
-        "a.toml:3: object 1: colour: unknown key, expected name, mesh, shape, radius_mm, size_mm, unit, "
-        "fit_mm, two_sided, pose, material");
+        "a.toml:3: object 1: colour: unknown key, expected name, mesh, shape, unit, fit_mm, two_sided, pose, "
+        "material");
+    EXPECT_EQ(error_of("[[object]]\nradius = 3\nshape = \"torus\"\n"),
+              "a.toml:2: object 1: radius: unknown key, expected name, shape, pose, material, two_sided, "
+              "radius_mm, tube_radius_mm, chord_mm");
     EXPECT_EQ(below_object("[material.soft]\nstifness_n_mm = 1\n"),
               "a.toml:5: material.soft.stifness_n_mm: unknown key, expected stiffness_n_mm, radius_mm, "
               "damping_ns_m");
@@ -88,7 +91,7 @@ TEST(SceneFile, WrongTypes)
     EXPECT_EQ(in_object("two_sided = 1\n"), "a.toml:3: object 1: two_sided: is 1, expected true or false");
     EXPECT_EQ(below_object("device = 3\n"),
               "a.toml:4: object 1: device: unknown key, expected name, mesh, shape, "
-              "radius_mm, size_mm, unit, fit_mm, two_sided, pose, material");
+              "unit, fit_mm, two_sided, pose, material");
     EXPECT_EQ(error_of("servo = 1\nobject = 2\n"), "a.toml:1: servo: is 1, expected a table");
     EXPECT_EQ(error_of("object = [1]\n"), "a.toml:1: object 1: expected a table [[object]]");
     EXPECT_EQ(below_object("[material]\nsoft = 1\n"),
@@ -125,13 +128,16 @@ TEST(SceneFile, MeshAndShape)
               "a.toml:3: object 1: mesh: no such file: gone.ply");
     EXPECT_EQ(error_of("[[object]]\nmesh = \"a.toml\"\n"),
               "a.toml:2: object 1: mesh: is \"a.toml\", expected a file .ply, .obj, .stl or .off");
-    EXPECT_EQ(
-        error_of("[[object]]\nname = \"a\"\n"),
-        "a.toml:1: object 1: mesh: is missing, expected mesh = \"FILE\" or shape = \"sphere\" or \"box\"");
+    EXPECT_EQ(error_of("[[object]]\nname = \"a\"\n"),
+              "a.toml:1: object 1: mesh: is missing, expected mesh = \"FILE\" or shape = \"sphere\" or "
+              "\"ellipsoid\" or \"torus\" or \"box\" or \"cylinder\" or \"cone\" or \"superquadric\" or "
+              "\"height_field\" or \"nurbs\"");
     EXPECT_EQ(in_object("shape = \"box\"\n"),
               "a.toml:3: object 1: shape: stands beside mesh, expected one of the two");
-    EXPECT_EQ(error_of("[[object]]\nshape = \"torus\"\n"),
-              "a.toml:2: object 1: shape: is \"torus\", expected sphere, box");
+    EXPECT_EQ(
+        error_of("[[object]]\nshape = \"donut\"\n"),
+        "a.toml:2: object 1: shape: is \"donut\", expected sphere, ellipsoid, torus, box, cylinder, cone, "
+        "superquadric, height_field, nurbs");
     EXPECT_EQ(error_of("[[object]]\nshape = \"sphere\"\n"),
               "a.toml:2: object 1: shape: a sphere needs radius_mm");
     EXPECT_EQ(error_of("[[object]]\nshape = \"box\"\n"),

@@ -325,7 +325,7 @@ TEST_P(Swap, UnderABumpySphereChangesTheForceByRounding)
 {
     const auto surface = study::PenetrationSurface::build({50});
     ASSERT_TRUE(surface);
-    const scene::Scene& scene = surface->finest().scene;
+    const scene::Scene& scene = surface->scene();
     Trace trace(scene, 1000);
     expect_rounding_only(
         scene, trace.run(study::spiral_path({.seconds = 1.5, .lift_s = 0.75, .lifting_s = 0.1}), GetParam()));
