@@ -19,6 +19,15 @@
 #define FIXED_ONE (1LL << FIXED_BITS)
 #define FIXED_LIMIT (1LL << 61)
 
+/* With the address sanitizer, of either compiler, what is said to fit is looked at. */
+#ifdef __SANITIZE_ADDRESS__
+#define FIXED_CHECKED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define FIXED_CHECKED
+#endif
+#endif
+
 typedef s64 real;
 typedef s64 fine;
 typedef s64 mask_element;
@@ -65,7 +74,7 @@ LANES_INLINE real fixed_shift(__int128 product)
 /* The same where the caller knows that it fits, below 2^63: a trap, where tests look for that. */
 LANES_INLINE real fixed_shift_fitting(__int128 product)
 {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef FIXED_CHECKED
 	if (product >> (63 + FIXED_BITS) != 0 && product >> (63 + FIXED_BITS) != -1)
 		__builtin_trap();
 #endif

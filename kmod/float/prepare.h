@@ -320,6 +320,9 @@ static inline void prepare_patch(struct phantom_float_set *set, struct block *bl
 	prepare_shell(block, lane, p, extent);
 }
 
+/* Farther than a tip can come from a patch, mm; its square is below 2^27. */
+#define IDLE_MM 1e4
+
 /* A lane that can never be in contact. */
 static inline void prepare_idle(struct block *block, u32 lane)
 {
@@ -339,7 +342,7 @@ static inline void prepare_idle(struct block *block, u32 lane)
 	p.area2 = zero;
 	row_set(block->radius, lane, WIDE(-1));
 	row3_set(&block->centre, lane, zero);
-	row_set(block->extent, lane, WIDE(-1e6));
+	row_set(block->extent, lane, WIDE(-IDLE_MM));
 	row_set(block->stiffness, lane, WIDE(0));
 	prepare_edges(block, lane, &p);
 	row_set(block->lean, lane, WIDE(0));
