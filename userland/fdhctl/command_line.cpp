@@ -67,6 +67,10 @@ void SceneOptions::add_preparation(CLI::App& app)
     app.add_option("--fit", fit_mm, "scale the longest side to this and centre at the origin")
         ->check(positive())
         ->type_name("MM");
+    app.add_option("--weld", weld_mm,
+                   "vertices, and edges at cracks, no farther apart than this are one [0, or the scene's]")
+        ->check(not_negative())
+        ->type_name("MM");
     app.add_option("--crease", crease_deg, "edges sharper than this keep two normals")
         ->check(not_negative())
         ->type_name("DEG")
@@ -98,8 +102,10 @@ scene::LoadOptions SceneOptions::load_options() const
     scene::LoadOptions options;
     options.prepare.full = prepare == "full";
     options.prepare.fit_mm = fit_mm;
+    options.prepare.weld_mm = weld_mm;
     options.prepare.crease_deg = crease_deg;
     options.prepare.split_mm = split_mm;
+    options.prepare.simplify = simplify;
     options.unit = unit;
     options.stiffness_n_mm = stiffness_n_mm;
     options.radius_mm = radius_mm;
@@ -123,6 +129,8 @@ std::vector<std::string> SceneOptions::arguments() const
         add_number("--stiffness", *stiffness_n_mm);
     if (radius_mm)
         add_number("--radius", *radius_mm);
+    if (weld_mm > 0)
+        add_number("--weld", weld_mm);
     if (crease_deg != SceneOptions{}.crease_deg)
         add_number("--crease", crease_deg);
     if (prepare != SceneOptions{}.prepare)

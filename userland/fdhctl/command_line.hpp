@@ -55,12 +55,13 @@ struct SceneOptions {
     std::string scene;
     std::optional<std::string> unit;
     std::optional<double> stiffness_n_mm, radius_mm;
-    double fit_mm = 0, crease_deg = 60, split_mm = 0;
+    double fit_mm = 0, weld_mm = 0, crease_deg = 60, split_mm = 0;
     std::string prepare = "full";
+    std::optional<mesh::SimplifyOptions> simplify; ///< of `fdhctl prepare`
     bool use_cache = true;
 
     void add(CLI::App& app);
-    /// The preparation alone: --unit, --fit, --crease, --prepare, --split.
+    /// The preparation alone: --unit, --fit, --weld, --crease, --prepare, --split.
     /// Whoever calls only this prepares anew every time.
     void add_preparation(CLI::App& app);
     [[nodiscard]] scene::LoadOptions load_options() const;

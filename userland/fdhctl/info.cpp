@@ -52,6 +52,7 @@ scene::Levels levels_of(const scene::Scene& scene, const fdh::SceneTree<14>& tre
     wanted.budget = budget;
     wanted.delay_s = std::max(scene::slow_feed_s, 1.0 / options.feed_rate_hz);
     wanted.edge_max_mm = feeder::edge_max_mm({});
+    wanted.cache = options.scene.load_options().cache;
     return scene::build_levels(scene, tree, wanted);
 }
 
@@ -104,7 +105,7 @@ nlohmann::json json_of(const Facts& facts)
                            {"fans", object.fans.fans.size()},
                            {"rims", object.rims.edges.size()},
                            {"material", scene.materials[object.material].name},
-                           {"report", report_json(object.report)}});
+                           {"report", report_json(object)}});
     for (const scene::Material& material : scene.materials) {
         nlohmann::json entry = {{"name", material.name},
                                 {"stiffness_n_mm", material.stiffness_n_mm},
@@ -158,7 +159,7 @@ std::string text_of(const Facts& facts)
         text += fmt::format("\n{:<11} {} ({}), material {}\n", "object", object.name,
                             object.file.empty() ? "shape" : object.file.string(),
                             scene.materials[object.material].name);
-        text += report_text(object.report);
+        text += report_text(object);
         if (!object.fans.fans.empty())
             add("fans", fmt::format("{} over creases and their corners", object.fans.fans.size()));
         if (!object.rims.edges.empty())

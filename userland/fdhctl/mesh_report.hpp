@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// mesh::Report for people and for programs.
+// mesh::Report for people and for programs: what preparation found, step by step, and what came out.
 #pragma once
 
 #include <string>
 
 #include <nlohmann/json.hpp>
 
-#include "mesh/prepare.hpp"
+#include "scene/scene.hpp"
 
 namespace phantom::fdhctl {
 
-nlohmann::json report_json(const mesh::Report& report);
-std::string report_text(const mesh::Report& report);
+/// Every count of the report, and "patches": {"faces", "fans", "rims"}.
+nlohmann::json report_json(const scene::Object& object);
+/// Lines of a word and what it says; steps that had nothing to do are left out.
+std::string report_text(const scene::Object& object);
 
 } // namespace phantom::fdhctl

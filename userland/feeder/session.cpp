@@ -143,6 +143,7 @@ struct Session::Impl {
         out.budget = options.feeder.budget;
         out.delay_s = std::max(scene::slow_feed_s, 1.0 / options.feeder.rate_hz);
         out.edge_max_mm = edge_max_mm(options.feeder);
+        out.cache = options.load.cache;
         return out;
     }
 

@@ -32,17 +32,22 @@ void warn_defects(bool two_sided, Report& report)
     if (!two_sided && report.rims > 0)
         report.warnings.push_back(fmt::format(
             "{} boundary edges in {} rim{}: the mesh is open, the force fades over the last contact radius "
-            "before a rim, and a tip can get behind it (two_sided = true in a scene file closes it)",
+            "before a rim, and a tip can get behind it (two_sided = true in a scene file closes it, --weld "
+            "MM "
+            "closes cracks of that width)",
             report.rim_edges, report.rims, report.rims == 1 ? "" : "s"));
     else if (!two_sided)
         warn(report.boundary_edges, "boundary edges whose points are others' as well: no proxy slides across "
                                     "them (--prepare full welds)");
-    warn(report.nonmanifold_edges, "non-manifold edges (more than two faces): no proxy slides across them");
+    warn(report.nonmanifold_edges,
+         "non-manifold edges (more than two faces): faces that belong together were "
+         "paired, the others end there");
     warn(report.unorientable_edges,
          "edges whose two faces disagree on the outside: no proxy slides across them");
     warn(report.faces_zero_area, "faces without area dropped (--prepare none keeps them)");
     warn(report.faces_duplicate, "duplicate faces dropped (--prepare none keeps them)");
     warn(report.faces_nonfinite, "faces with a corner that is no finite point dropped");
+    warn(report.polygons_crossed, "polygons cross themselves: their triangles overlap, and are felt twice");
 }
 
 } // namespace

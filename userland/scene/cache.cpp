@@ -158,6 +158,37 @@ void add_surface(const Surface& surface, const Numbers& one, std::uint32_t level
     out.add(base + tree_leaves, tree.leaves);
 }
 
+CacheKey key_of(const std::string& words)
+{
+    const XXH128_hash_t hash = XXH3_128bits(words.data(), words.size());
+    return {{hash.high64, hash.low64}};
+}
+
+fs::path file_of(const fs::path& directory, const CacheKey& key)
+{
+    return directory / (key.text() + extension);
+}
+
+/// What was used last is removed last. It may be somebody else's file: then it keeps its time.
+void mark_used(const fs::path& file)
+{
+    std::error_code ignored;
+    fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
+}
+
+Status write(const fs::path& directory, const CacheKey& key, const SectionWriter& out)
+{
+    std::error_code code;
+    fs::create_directories(directory, code);
+    if (code)
+        return Error{directory.string(), "cannot be made: " + code.message()};
+    fs::permissions(directory, fs::perms::owner_all, code);
+    if (const Status status = out.write(file_of(directory, key), key); !status)
+        return status;
+    trim_cache(directory, cache_bytes_max);
+    return success();
+}
+
 /// What a writer left that did not come to its end: a file that is not written to any more.
 bool is_left_over(const fs::path& file)
 {
@@ -227,13 +258,12 @@ Result<CacheTicket> ticket_for(const CacheRequest& request)
     const XXH128_hash_t content = XXH3_128bits(bytes.data(), bytes.size());
     const std::string all = fmt::format("{} {:016x}{:016x} {}", preparation_id, content.high64, content.low64,
                                         options_text(request));
-    const XXH128_hash_t key = XXH3_128bits(all.data(), all.size());
-    return CacheTicket{{{key.high64, key.low64}}, *identity};
+    return CacheTicket{key_of(all), *identity};
 }
 
 Result<bool> open_cached(const fs::path& directory, const CacheTicket& ticket, Object& object)
 {
-    const fs::path file = directory / (ticket.key.text() + extension);
+    const fs::path file = file_of(directory, ticket.key);
     std::error_code code;
     if (!fs::exists(file, code))
         return false;
@@ -255,26 +285,20 @@ Result<bool> open_cached(const fs::path& directory, const CacheTicket& ticket, O
         at = end + 1;
     }
     object = std::move(filled);
-    // What was used last is pruned last. It may be somebody else's cache: then it keeps its time.
-    fs::last_write_time(file, fs::file_time_type::clock::now(), code);
+    mark_used(file);
     return true;
 }
 
-Status keep(const fs::path& directory, const CacheTicket& ticket, const CacheRequest& request,
-            const Object& object)
+Result<bool> keep(const fs::path& directory, const CacheTicket& ticket, const CacheRequest& request,
+                  const Object& object)
 {
     const Result<std::string> identity = identity_of(request.mesh);
     if (!identity || *identity != ticket.identity)
-        return success();
-    std::error_code code;
-    fs::create_directories(directory, code);
-    if (code)
-        return Error{directory.string(), "cannot be made: " + code.message()};
-    fs::permissions(directory, fs::perms::owner_all, code);
-
+        return false;
     std::string lines;
     for (const std::string& warning : object.report.warnings)
         lines += warning + '\n';
+    std::error_code code;
     const std::string from = fs::absolute(request.mesh, code).string();
     const mesh::Findings& counts = object.report;
     const Numbers one = numbers_of(object);
@@ -284,10 +308,45 @@ Status keep(const fs::path& directory, const CacheTicket& ticket, const CacheReq
     out.add(findings, std::span(&counts, 1));
     out.add(warnings, characters(lines));
     add_surface(object, one, 0, out);
-    if (const Status status = out.write(directory / (ticket.key.text() + extension), ticket.key); !status)
-        return status;
-    trim_cache(directory, cache_bytes_max);
-    return success();
+    if (const Status status = write(directory, ticket.key, out); !status)
+        return status.error();
+    return true;
+}
+
+CacheKey derived_key(const CacheKey& object, const std::string& words)
+{
+    return key_of(object.text() + ' ' + words);
+}
+
+std::optional<std::vector<Surface>> open_chain(const fs::path& directory, const CacheKey& key)
+{
+    const fs::path file = file_of(directory, key);
+    const auto opened = SectionReader::open(file, key);
+    if (!opened)
+        return std::nullopt;
+    std::vector<Surface> chain;
+    while (opened->find<Numbers>(static_cast<std::uint32_t>(chain.size()) * level_stride + numbers)) {
+        Surface surface;
+        if (!Loader(*opened, static_cast<std::uint32_t>(chain.size())).load(surface))
+            return std::nullopt;
+        chain.push_back(std::move(surface));
+    }
+    mark_used(file);
+    return chain;
+}
+
+Status keep_chain(const fs::path& directory, const CacheKey& key, const std::string& source_text,
+                  const std::vector<Surface>& chain)
+{
+    SectionWriter out;
+    out.add(version, characters(preparation_id));
+    out.add(source, characters(source_text));
+    std::vector<Numbers> all;
+    for (const Surface& surface : chain)
+        all.push_back(numbers_of(surface));
+    for (std::size_t level = 0; level < chain.size(); ++level)
+        add_surface(chain[level], all[level], static_cast<std::uint32_t>(level), out);
+    return write(directory, key, out);
 }
 
 std::vector<CacheEntry> list_cache(const fs::path& directory, bool whole)

@@ -52,10 +52,20 @@ Result<CacheTicket> ticket_for(const CacheRequest& request);
 /// cannot be used, and why; the object is as it was.
 Result<bool> open_cached(const std::filesystem::path& directory, const CacheTicket& ticket, Object& object);
 
-/// Keeps the object. Its hulls must have been built. Error: cannot be written. Nothing is written if the mesh
-/// file changed since the ticket was made.
-Status keep(const std::filesystem::path& directory, const CacheTicket& ticket, const CacheRequest& request,
-            const Object& object);
+/// Keeps the object. Its hulls must have been built. Error: cannot be written. False, and nothing is written,
+/// if the mesh file changed since the ticket was made.
+Result<bool> keep(const std::filesystem::path& directory, const CacheTicket& ticket,
+                  const CacheRequest& request, const Object& object);
+
+/// The key of what was made of a kept object, in the way that the words say.
+CacheKey derived_key(const CacheKey& object, const std::string& words);
+
+/// A chain of levels of detail, or nothing if it is not kept or its file cannot be used.
+std::optional<std::vector<Surface>> open_chain(const std::filesystem::path& directory, const CacheKey& key);
+
+/// Keeps a chain; the hulls of all must have been built. `source` is shown by list_cache().
+Status keep_chain(const std::filesystem::path& directory, const CacheKey& key, const std::string& source,
+                  const std::vector<Surface>& chain);
 
 /// A file of the cache, for people.
 struct CacheEntry {

@@ -6,7 +6,10 @@
 #include <chrono>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "mesh/simplify_chain.hpp"
+#include "scene/cache.hpp"
 
 namespace phantom::scene {
 
@@ -40,6 +43,13 @@ std::vector<Surface> chain_of(const Scene& scene, const Object& object, const fd
     finest.tree = tree;
     if (enough(finest))
         return out;
+    std::optional<CacheKey> key;
+    if (options.cache && object.cache_key) {
+        key = derived_key(*object.cache_key,
+                          fmt::format("levels {} {:a} {:a}", options.budget, needed_mm, options.edge_max_mm));
+        if (auto kept = open_chain(*options.cache, *key))
+            return std::move(*kept);
+    }
     mesh::ChainOptions chain;
     chain.edge_max_mm = options.edge_max_mm;
     chain.threads = options.threads;
@@ -50,6 +60,10 @@ std::vector<Surface> chain_of(const Scene& scene, const Object& object, const fd
         return enough(out.back());
     };
     mesh::simplify_chain(object.mesh, tree, chain);
+    const bool whole = !options.cancelled || !options.cancelled();
+    // The next session builds it again if it cannot be kept: nobody waits for it.
+    if (key && whole)
+        (void)keep_chain(*options.cache, *key, object.file.string() + ", levels of detail", out);
     return out;
 }
 

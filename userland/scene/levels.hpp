@@ -50,7 +50,9 @@ struct LevelOptions {
     double speed_mm_s = fastest_hand_mm_s, delay_s = slow_feed_s;
     double edge_max_mm = std::numeric_limits<double>::infinity(); ///< no level with a longer edge
     unsigned threads = 0;                                         ///< 0: all cores
-    std::function<bool()> cancelled{};                            ///< the levels then end where they are
+    std::optional<std::filesystem::path>
+        cache{};                       ///< where the chains of kept objects are kept, see cache.hpp
+    std::function<bool()> cancelled{}; ///< the levels then end where they are
 };
 
 /// A chain of simplifications for every object that needs one: whose budget of triangles covers too little at

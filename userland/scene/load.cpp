@@ -51,12 +51,15 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
                                      const LoadOptions& options)
 {
     mesh::PrepareOptions prepare = options.prepare;
-    const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or("mm")));
+    const char* const of_format = mesh::is_in_metres(object.mesh) ? "m" : "mm";
+    const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or(of_format)));
     // A shape's sizes are in mm already.
     prepare.scale *= object.shape ? 1.0 : millimetres_in(unit).value_or(1.0);
     prepare.two_sided = object.two_sided;
     if (prepare.fit_mm <= 0 && object.fit_mm)
         prepare.fit_mm = *object.fit_mm;
+    if (prepare.weld_mm <= 0 && object.weld_mm)
+        prepare.weld_mm = *object.weld_mm;
     return prepare;
 }
 
@@ -105,6 +108,7 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
     const Result<bool> opened = open_cached(directory, *ticket, object);
     if (opened && *opened) {
         object.from_cache = true;
+        object.cache_key = ticket->key;
         return success();
     }
     if (!opened)
@@ -115,8 +119,11 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
     object.build_hulls();
     scene.hulls_ms +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    if (const Status status = keep(directory, *ticket, request, object); !status)
-        scene.notes.push_back(status.error().text() + ": the next load will prepare it again");
+    const Result<bool> kept = keep(directory, *ticket, request, object);
+    if (!kept)
+        scene.notes.push_back(kept.error().text() + ": the next load will prepare it again");
+    else if (*kept)
+        object.cache_key = ticket->key;
     return success();
 }
 
@@ -146,9 +153,8 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     std::error_code ignored;
     if (!is_scene_file(file) && !mesh::is_mesh_file(file) && std::filesystem::is_regular_file(file, ignored))
         return Error{file.string(),
-                     fmt::format("unknown extension \"{}\", expected a scene file .toml or a mesh "
-                                 ".ply, .obj, .stl or .off",
-                                 file.extension().string())};
+                     fmt::format("unknown extension \"{}\", expected a scene file .toml or a mesh {}",
+                                 file.extension().string(), mesh::mesh_extensions)};
     auto entries = is_scene_file(file) ? read_scene_file(file) : Result<SceneFile>(file_round(file));
     if (!entries)
         return entries.error();

@@ -15,6 +15,7 @@
 #include "mesh/mesh.hpp"
 #include "mesh/prepare.hpp"
 #include "mesh/rims.hpp"
+#include "scene/cache_key.hpp"
 
 namespace phantom::scene {
 
@@ -43,6 +44,7 @@ struct Object : Surface {
     std::filesystem::path file;
     mesh::Report report;
     bool from_cache = false;
+    std::optional<CacheKey> cache_key{}; ///< of the file that it is kept in
     fdh::Pose pose;
     std::uint32_t material = 0;                     ///< index into Scene::materials
     std::uint32_t first_face = 0, first_vertex = 0; ///< scene-wide numbers of face 0 and vertex 0

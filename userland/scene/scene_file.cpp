@@ -103,13 +103,14 @@ struct ObjectKeys {
     Keys known, expected;
 
     explicit ObjectKeys(const toml::table& object)
-        : known(joined({"name", "mesh", "shape", "unit", "fit_mm", "two_sided", "pose", "material"},
-                       shape_keys()))
+        : known(
+              joined({"name", "mesh", "shape", "unit", "fit_mm", "weld_mm", "two_sided", "pose", "material"},
+                     shape_keys()))
     {
         const auto own = shape_keys(object["shape"].value_or(std::string_view()));
-        expected = own.empty()
-                       ? Keys{"name", "mesh", "shape", "unit", "fit_mm", "two_sided", "pose", "material"}
-                       : joined({"name", "shape", "pose", "material", "two_sided"}, own);
+        expected = own.empty() ? Keys{"name",    "mesh",      "shape", "unit",    "fit_mm",
+                                      "weld_mm", "two_sided", "pose",  "material"}
+                               : joined({"name", "shape", "pose", "material", "two_sided"}, own);
     }
 };
 
@@ -125,6 +126,7 @@ void read_shape_object(TomlReader& object, const std::filesystem::path& scene, F
 {
     refuse_beside(object, "unit", "shape: sizes are in mm");
     refuse_beside(object, "fit_mm", "shape: sizes are in mm");
+    refuse_beside(object, "weld_mm", "shape: it is welded");
     auto entry = read_shape(object, scene);
     if (!entry)
         return;
@@ -147,9 +149,10 @@ void read_mesh(TomlReader& object, const std::filesystem::path& scene, Faults& f
     if (!std::filesystem::exists(out.mesh))
         object.fault("mesh", "no such file: " + out.mesh.string());
     else if (!mesh::is_mesh_file(out.mesh))
-        object.fault("mesh", fmt::format("is \"{}\", expected a file .ply, .obj, .stl or .off", *mesh));
+        object.fault("mesh", fmt::format("is \"{}\", expected a file {}", *mesh, mesh::mesh_extensions));
     out.unit = object.word("unit", unit_words);
     out.fit_mm = object.number("fit_mm", range::length_mm);
+    out.weld_mm = object.number("weld_mm", range::length_mm);
     out.two_sided = object.flag("two_sided").value_or(false);
     for (const std::string_view key : shape_keys())
         refuse_beside(object, key, "mesh");

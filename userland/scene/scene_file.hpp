@@ -23,7 +23,7 @@ struct ObjectEntry {
     std::optional<double> chord_mm;                              ///< of a shape
     std::map<std::string, std::string, std::less<>> shape_where; ///< "file:line" of the shape's keys
     std::optional<std::string> unit;
-    std::optional<double> fit_mm;
+    std::optional<double> fit_mm, weld_mm;
     fdh::Pose pose;
     bool two_sided = false;
     std::uint32_t material = 0;

@@ -8,28 +8,19 @@
 // In this machine's byte order: the file is a cache and never travels. Checksums are XXH3 (Collet), 64 bits.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <type_traits>
 #include <vector>
 
 #include "base/mapped_file.hpp"
 #include "base/result.hpp"
+#include "scene/cache_key.hpp"
 
 namespace phantom::scene {
-
-/// What the content was made from: two that differ have different keys.
-struct CacheKey {
-    std::array<std::uint64_t, 2> words{};
-    bool operator==(const CacheKey&) const = default;
-    /// 32 hexadecimal digits.
-    [[nodiscard]] std::string text() const;
-};
 
 class SectionWriter {
   public:

@@ -79,6 +79,7 @@ void add_scene_options(CLI::App& app, Options& options, std::string& prepare, bo
 {
     app.add_option("scene", options.scene, "mesh or scene file")->required()->type_name("SCENE");
     app.add_option("--unit", options.load.unit, "of the file's coordinates: mm, m, cm, in, um");
+    app.add_option("--weld", options.load.prepare.weld_mm, "vertices no farther apart than this are one, mm");
     app.add_option("--fit", options.load.prepare.fit_mm, "scale the longest side to this and centre it, mm")
         ->check(CLI::PositiveNumber);
     app.add_option("--stiffness", options.load.stiffness_n_mm, "of every material, N/mm")

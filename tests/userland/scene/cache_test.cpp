@@ -264,7 +264,9 @@ TEST_F(Cache, MeshThatChangedMeanwhileIsNotKept)
     Object object = load({}).objects[0];
     object.build_hulls();
     overwrite(mesh_, folded_sheet(30));
-    EXPECT_TRUE(keep(*options_.cache, *ticket, request, object));
+    const Result<bool> kept = keep(*options_.cache, *ticket, request, object);
+    ASSERT_TRUE(kept);
+    EXPECT_FALSE(*kept);
     EXPECT_TRUE(entries().empty());
 }
 
@@ -282,6 +284,34 @@ TEST_F(Cache, ManyAtOnceGiveTheSame)
         thread.join();
     EXPECT_EQ(entries().size(), 1U);
     EXPECT_EQ(std::distance(fs::directory_iterator(*options_.cache), {}), 1);
+}
+
+TEST_F(Cache, ChainsAreKeptBesideTheirObject)
+{
+    const Object object = load().objects[0];
+    ASSERT_TRUE(object.cache_key);
+    LoadOptions coarser;
+    coarser.prepare.fit_mm = 30;
+    std::vector<Surface> chain{load({}).objects[0], load(coarser).objects[0]};
+    for (Surface& surface : chain)
+        surface.build_hulls();
+    chain[1].error_mm = 0.25;
+    const CacheKey key = derived_key(*object.cache_key, "levels 64");
+    EXPECT_NE(key, derived_key(*object.cache_key, "levels 32"));
+    EXPECT_FALSE(open_chain(*options_.cache, key));
+    ASSERT_TRUE(keep_chain(*options_.cache, key, "levels of sheet.off", chain));
+    const auto opened = open_chain(*options_.cache, key);
+    ASSERT_TRUE(opened);
+    ASSERT_EQ(opened->size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_TRUE((*opened)[i].mesh.vertices == chain[i].mesh.vertices);
+        EXPECT_TRUE((*opened)[i].fans.fans == chain[i].fans.fans);
+        EXPECT_EQ((*opened)[i].error_mm, chain[i].error_mm);
+    }
+    EXPECT_EQ(entries().back().source, "levels of sheet.off");
+    const fs::path file = *options_.cache / (key.text() + ".prepared");
+    overwrite(file, bytes_of(file).substr(0, 2000));
+    EXPECT_FALSE(open_chain(*options_.cache, key));
 }
 
 TEST_F(Cache, WhatWasUsedLongestAgoGoesFirst)

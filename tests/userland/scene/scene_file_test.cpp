@@ -40,7 +40,8 @@ TEST(SceneFile, SoundFileLoads)
 {
     EXPECT_EQ(
         error_of(
-            "unit = \"cm\"\n[[object]]\nname = \"a\"\nmesh = \"part.obj\"\nunit = \"in\"\nfit_mm = 50\n"
+            "unit = \"cm\"\n[[object]]\nname = \"a\"\nmesh = \"part.obj\"\nunit = \"in\"\nfit_mm = "
+            "50\nweld_mm = 0.1\n"
             "material = \"soft\"\npose = { translation_mm = [1, 2.5, -3], axis = [0, 0, 2], angle_deg = 90 "
             "}\n"
             "[[object]]\nshape = \"box\"\nsize_mm = [10, 20, 30]\n[object.pose]\nquaternion = [1, 0, 0, 0]\n"
@@ -55,10 +56,9 @@ TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
 {
     EXPECT_EQ(error_of("units = \"mm\"\n[[object]]\nmesh = \"part.obj\"\n"),
               "a.toml:1: units: unknown key, expected unit, levels, object, material, device, servo");
-    EXPECT_EQ(
-        in_object("colour = \"red\"\n"),
-        "a.toml:3: object 1: colour: unknown key, expected name, mesh, shape, unit, fit_mm, two_sided, pose, "
-        "material");
+    EXPECT_EQ(in_object("colour = \"red\"\n"), "a.toml:3: object 1: colour: unknown key, expected name, "
+                                               "mesh, shape, unit, fit_mm, weld_mm, two_sided, pose, "
+                                               "material");
     EXPECT_EQ(error_of("[[object]]\nradius = 3\nshape = \"torus\"\n"),
               "a.toml:2: object 1: radius: unknown key, expected name, shape, pose, material, two_sided, "
               "radius_mm, tube_radius_mm, chord_mm");
@@ -91,7 +91,7 @@ TEST(SceneFile, WrongTypes)
     EXPECT_EQ(in_object("two_sided = 1\n"), "a.toml:3: object 1: two_sided: is 1, expected true or false");
     EXPECT_EQ(below_object("device = 3\n"),
               "a.toml:4: object 1: device: unknown key, expected name, mesh, shape, "
-              "unit, fit_mm, two_sided, pose, material");
+              "unit, fit_mm, weld_mm, two_sided, pose, material");
     EXPECT_EQ(error_of("servo = 1\nobject = 2\n"), "a.toml:1: servo: is 1, expected a table");
     EXPECT_EQ(error_of("object = [1]\n"), "a.toml:1: object 1: expected a table [[object]]");
     EXPECT_EQ(below_object("[material]\nsoft = 1\n"),
@@ -127,7 +127,8 @@ TEST(SceneFile, MeshAndShape)
     EXPECT_EQ(error_of("[[object]]\n\nmesh = \"gone.ply\"\n"),
               "a.toml:3: object 1: mesh: no such file: gone.ply");
     EXPECT_EQ(error_of("[[object]]\nmesh = \"a.toml\"\n"),
-              "a.toml:2: object 1: mesh: is \"a.toml\", expected a file .ply, .obj, .stl or .off");
+              "a.toml:2: object 1: mesh: is \"a.toml\", expected a file .ply, .obj, .stl, .off, .vtp, .vtk, "
+              ".3ds, .gltf or .glb");
     EXPECT_EQ(error_of("[[object]]\nname = \"a\"\n"),
               "a.toml:1: object 1: mesh: is missing, expected mesh = \"FILE\" or shape = \"sphere\" or "
               "\"ellipsoid\" or \"torus\" or \"box\" or \"cylinder\" or \"cone\" or \"superquadric\" or "

@@ -101,6 +101,24 @@ TEST(Scene, OptionsReplaceUnitFitStiffnessAndRadius)
     EXPECT_EQ(scene.max_radius_mm(), 4);
 }
 
+TEST(Scene, WeldDistanceOfTheFileUnlessTheOptionsHaveOne)
+{
+    const Folder folder;
+    folder.write("part.obj",
+                 "v 0 0 0\nv 50 0 0\nv 0 50 0\nv 0.04 0 0\nv 0 -50 0\nv 50 0.04 0\nf 1 2 3\nf 4 5 6\n");
+    const auto edges = [&folder](const std::string& key, double weld_mm) {
+        LoadOptions options;
+        options.prepare.weld_mm = weld_mm;
+        const auto scene = load(folder.write("a.toml", "[[object]]\nmesh = \"part.obj\"\n" + key), options);
+        EXPECT_TRUE(scene.ok()) << scene.error().text();
+        return scene.ok() ? scene->objects[0].report.boundary_edges : 0;
+    };
+    EXPECT_EQ(edges("", 0), 6U);
+    EXPECT_EQ(edges("weld_mm = 0.1\n", 0), 4U);
+    EXPECT_EQ(edges("", 0.1), 4U);
+    EXPECT_EQ(edges("weld_mm = 0.1\n", 0.001), 6U);
+}
+
 TEST(Scene, BadOptionsAreRefusedByTheirName)
 {
     const auto refused = [](const LoadOptions& options, const std::string& name) {
