@@ -28,6 +28,7 @@
  * float/ is called there.
  */
 #include <phantom_platform.h>
+#include "phantom_carry.h"
 #include "phantom_context.h"
 #include "phantom_servo.h"
 #include <phantom_trace.h>
@@ -37,9 +38,6 @@
 
 /* Where the geometry changes, surfaces that ought to be the same may lie this far apart. */
 #define PHANTOM_CARRY_NM 10000
-
-/* From one round of phantom_servo_search() to the next: 3 rounds for a surface that moved by 1 mm. */
-#define PHANTOM_SEARCH_WIDER 8
 
 static u64 phantom_servo_now(const struct phantom_servo *servo)
 {
@@ -73,8 +71,7 @@ static void phantom_servo_close_section(struct phantom_servo *servo, u64 begin)
 		max_t(u64, stats->next.section_max_ns, min_t(u64, length, U32_MAX));
 }
 
-static void phantom_servo_float_tick(struct phantom_servo *servo,
-				     const struct phantom_float_ops *ops)
+void phantom_servo_float_tick(struct phantom_servo *servo, const struct phantom_float_ops *ops)
 {
 	bool more;
 
@@ -226,100 +223,6 @@ static bool phantom_servo_place(struct phantom_servo *servo, const struct phanto
 	       phantom_set_covers(slot, job->tip_nm, 0);
 }
 
-/*
- * The place lift_nm over the proxy, or over where the tip was, and aside_nm from there, relative to
- * the set. False: it does not fit.
- */
-static bool phantom_servo_lift(struct phantom_servo *servo, s64 lift_nm, const s64 aside_nm[3],
-			       s32 relative_nm[3])
-{
-	const struct phantom_touch *touch = &servo->touch;
-	const s64 *base_nm = touch->inside ? touch->proxy_nm : touch->previous_nm;
-	s64 place_nm[3];
-	int axis;
-
-	for (axis = 0; axis < 3; axis++)
-		place_nm[axis] = base_nm[axis] + aside_nm[axis] +
-				 lift_nm * touch->normal_q30[axis] / PHANTOM_Q30_ONE;
-	return phantom_set_relative(servo->active, place_nm, relative_nm);
-}
-
-/* The tick of a tip that comes from the job's previous_nm, outside, if there is a path. */
-static void phantom_servo_arrive(struct phantom_servo *servo, bool path)
-{
-	struct phantom_float_job *job = &servo->job;
-
-	job->inside = 0;
-	job->proxy_face = PHANTOM_PATCH_NONE;
-	memcpy(job->proxy_nm, job->tip_nm, sizeof(job->proxy_nm));
-	job->path_valid = path;
-	phantom_servo_float_tick(servo, servo->active->ops);
-}
-
-/*
- * The proxy's place on a surface that lies beside the old proxy on all sides: a crease that has
- * moved up. Looked for on short paths through the old place, along the normal, shifted to each side;
- * from where one goes in the proxy walks down to the tip. False: there is none.
- */
-static bool phantom_servo_search(struct phantom_servo *servo, s64 reach_nm)
-{
-	struct phantom_float_job *job = &servo->job;
-	s32 tip_nm[3];
-	int side;
-
-	memcpy(tip_nm, job->tip_nm, sizeof(tip_nm));
-	for (side = 0; side < 27; side++) {
-		const s64 aside_nm[3] = {(side % 3 - 1) * reach_nm, (side / 3 % 3 - 1) * reach_nm,
-					 (side / 9 - 1) * reach_nm};
-		bool fits = phantom_servo_lift(servo, reach_nm, aside_nm, job->previous_nm) &&
-			    phantom_servo_lift(servo, -reach_nm, aside_nm, job->tip_nm);
-
-		if (fits)
-			phantom_servo_arrive(servo, true);
-		memcpy(job->tip_nm, tip_nm, sizeof(tip_nm));
-		memcpy(job->previous_nm, tip_nm, sizeof(tip_nm));
-		if (!fits || !job->inside)
-			continue;
-		phantom_servo_float_tick(servo, servo->active->ops);
-		if (job->inside)
-			return true;
-	}
-	return false;
-}
-
-/*
- * CHANGE OF GEOMETRY. The surface that the tip touches, or that the proxy lies on, is another one
- * now, a little beside the old. phantom_servo_depart() ends with the old: the tick as it would have
- * been is what the crossfade begins with. Then the new one's tick is told that the tip comes from
- * outside, along the normal of the old contact: if the new surface stands between, the proxy is
- * where that path crosses it. First from as far as the two may differ; if nothing at all is felt
- * then, from a contact radius farther: it may have risen over the tip. (Not at once: in a narrow
- * slot that start lies behind another wall.) At last round about.
- */
-static void phantom_servo_carry(struct phantom_servo *servo)
-{
-	static const s64 straight_nm[3];
-	struct phantom_float_job *job = &servo->job;
-	s64 lift_nm = servo->touch.carry_nm;
-	int attempt;
-
-	for (attempt = 0; attempt < 2; attempt++) {
-		bool path = phantom_servo_lift(servo, lift_nm, straight_nm, job->previous_nm);
-
-		phantom_servo_arrive(servo, path);
-		if (job->inside || job->contacts)
-			return;
-		lift_nm += servo->active->reach_nm;
-	}
-	if (!servo->touch.inside)
-		return;
-	for (lift_nm = servo->touch.carry_nm; lift_nm <= servo->touch.moved_nm;
-	     lift_nm *= PHANTOM_SEARCH_WIDER)
-		if (phantom_servo_search(servo, lift_nm))
-			return;
-	phantom_servo_arrive(servo, false);
-}
-
 static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_pass *pass)
 {
 	const struct phantom_slot *slot = servo->active;
@@ -339,7 +242,7 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 		job->velocity_nm_s[axis] =
 			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
 	if (touch->carry_nm && touch->valid)
-		phantom_servo_carry(servo);
+		phantom_carry(servo);
 	else
 		phantom_servo_float_tick(servo, slot->ops);
 

@@ -195,6 +195,8 @@ static inline void phantom_model_unpack(u64 packed, struct phantom_model *model)
 
 /* Converts sets.copy into the slot, one float section per PHANTOM_FLOAT_PREPARE_MAX. Submitter. */
 void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot);
+/* The contact that the job asks for, in as many float sections as it takes. Servo thread. */
+void phantom_servo_float_tick(struct phantom_servo *servo, const struct phantom_float_ops *ops);
 /* Run state. */
 void phantom_servo_forget_touch(struct phantom_servo *servo);
 /* Time begins now, the first tick comes one period later. Run state. */

@@ -8,7 +8,8 @@
  * from the tip is formed exactly (nm_difference()).
  *
  * Lanes that can never be in contact (patches that cannot be computed, and the padding of the last
- * block) have R = -1, a bounding sphere of no size and three equal corners.
+ * block) have R = -1, a bounding sphere of no size and three equal corners. Of a face that cannot be
+ * computed corners, sphere and a plane are kept: it is in nobody's way but of a path through it.
  */
 #ifndef PHANTOM_FLOAT_BLOCK_H
 #define PHANTOM_FLOAT_BLOCK_H
@@ -62,6 +63,9 @@ struct block {
 	/* fans: 1 over an edge (x1 = x2), 2 over a vertex; A0 is A1 or A2 there. See projected.h */
 	real_row order;
 	real_row height_limit; /* no contact has a larger h */
+#ifdef PHANTOM_REAL_FIXED
+	mask_lanes tame[PHANTOM_STEPS]; /* see cubic_tame() */
+#endif
 
 	index_row face; /* phantom_patch.face */
 	index_row vertex[3]; /* phantom_patch.vertex */
@@ -85,6 +89,7 @@ _Static_assert(sizeof(real) > sizeof(float) ||
 struct float_material {
 	real stiffness; /* N/mm */
 	real radius; /* mm */
+	real most; /* k R, N, as far as forces are added up */
 	real damping; /* N per mm/s; 0 unless the material names the effect */
 };
 
@@ -182,6 +187,21 @@ LANES_INLINE struct real3 row3_lane(const struct row3 *row, u32 lane)
 			      row_lane(row->z, lane)};
 }
 
+/*
+ * Is the patch one whose cubic may be reckoned with without saturation (patch_tame() of prepare.h)? Floating
+ * point needs no such promise, and keeps no row of it.
+ */
+LANES_INLINE void block_set_tame(struct block *block, u32 lane, bool tame)
+{
+#ifdef PHANTOM_REAL_FIXED
+	block->tame[lane] = (mask_lanes){tame ? -1 : 0};
+#else
+	(void)block;
+	(void)lane;
+	(void)tame;
+#endif
+}
+
 /* A point in nm, once per lane. */
 struct nm_point {
 	nm_lanes axis[3];
@@ -226,21 +246,39 @@ LANES_INLINE mask_lanes within_reach(const struct block *block, u32 step, struct
 	return (lanes3_dot(away, away) <= mul(far, far)) & (far >= 0);
 }
 
+/* The square of what of `away` is beside the direction g, when away2 = |away|^2 and height = g . away. */
+LANES_INLINE lanes beside2(struct lanes3 away, lanes away2, struct lanes3 g, lanes height)
+{
+#ifdef PHANTOM_REAL_FIXED
+	/* a difference of squares loses nothing there that a patch's margin does not hold a hundred times */
+	(void)away;
+	(void)g;
+	return away2 - mul_fitting(height, height);
+#else
+	struct lanes3 beside = lanes3_sub(away, lanes3_scale(g, height));
+
+	(void)away2;
+	return lanes3_dot(beside, beside);
+#endif
+}
+
 /*
  * Lanes whose shell may hold the point that is q from x0 and `height` over the plane: those in reach
- * with no more beside the face than its extent and what the shell leans outward at that height.
+ * with no more beside the face than its extent and what the shell leans outward at that height; all in
+ * reach if it may not be told by that.
  */
 LANES_INLINE mask_lanes within_shell(const struct block *block, u32 step, struct lanes3 q,
-				     lanes height, lanes lean, lanes margin)
+				     lanes height, lanes lean, bool leans, lanes margin)
 {
-	struct lanes3 g = row3_step(&block->face_normal, step);
 	struct lanes3 away = lanes3_sub(q, row3_step(&block->centre, step));
-	struct lanes3 beside = lanes3_sub(away, lanes3_scale(g, height));
+	lanes away2 = lanes3_dot_fitting(away, away);
 	lanes far = block->radius[step] + block->extent[step];
-	lanes side = block->extent[step] + margin + mul(lanes_abs(height), lean);
+	lanes side = block->extent[step] + margin + mul_fitting(lanes_abs(height), lean);
 
-	return (lanes3_dot(away, away) <= mul(far, far)) & (far >= 0) &
-	       ((lanes3_dot(beside, beside) <= mul(side, side)) | (lean >= REAL(LEAN_MOST)));
+	return (away2 <= mul_fitting(far, far)) & (far >= 0) &
+	       ((beside2(away, away2, row3_step(&block->face_normal, step), height) <=
+		 mul(side, side)) |
+		(leans ? lean >= REAL(LEAN_MOST) : lean >= REAL(0)));
 }
 
 #endif /* PHANTOM_FLOAT_BLOCK_H */

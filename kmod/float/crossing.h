@@ -176,7 +176,7 @@ LANES_INLINE mask_lanes crossing_candidates(const struct block *block, u32 step,
 {
 	struct lanes3 g = row3_step(&block->face_normal, step);
 	struct lanes3 q = from_corner(block, step, 0, &segment->end);
-	lanes end = lanes3_dot(g, q), begin;
+	lanes end = lanes3_dot_fitting(g, q), begin;
 	mask_lanes candidates = way == CROSSING_INWARD ? end < 0 : end >= 0;
 
 	/* the usual tick: a tip that is over all of them */
@@ -186,7 +186,7 @@ LANES_INLINE mask_lanes crossing_candidates(const struct block *block, u32 step,
 	if (!mask_bits(candidates))
 		return candidates;
 	q = from_corner(block, step, 0, &segment->begin);
-	begin = lanes3_dot(g, q);
+	begin = lanes3_dot_fitting(g, q);
 	return candidates & (way == CROSSING_INWARD ? begin >= -rounding : begin <= rounding);
 }
 
@@ -195,6 +195,89 @@ struct beside {
 	u32 vertex[3]; /* of that face: whoever has one of them is not looked at */
 	u32 patch; /* nor is this one */
 };
+
+LANES_INLINE bool crossing_has(const struct block *block, u32 lane, u32 vertex)
+{
+	return block->vertex[0][lane] == vertex || block->vertex[1][lane] == vertex ||
+	       block->vertex[2][lane] == vertex;
+}
+
+/* The edge of the patch that is longest. */
+static inline u32 crossing_longest(const struct block *block, u32 lane)
+{
+	static const s32 origin[3] = {0, 0, 0};
+	real most = 0;
+	u32 longest = 0, i;
+
+	for (i = 0; i < 3; i++) {
+		real length =
+			real3_length(real3_sub(from_corner_lane(block, lane, i, origin),
+					       from_corner_lane(block, lane, (i + 1) % 3, origin)));
+
+		if (length > most) {
+			most = length;
+			longest = i;
+		}
+	}
+	return longest;
+}
+
+/*
+ * The neighbour of a face without a shell, over its longest edge, which all of it lies at, or else whichever has
+ * most vertices of it; NONE if none has a shell.
+ */
+static inline u32 crossing_neighbour(const struct phantom_float_set *set, u32 patch)
+{
+	const struct block *own = &set->blocks[patch / PHANTOM_BLOCK];
+	u32 lane = patch % PHANTOM_BLOCK, longest = crossing_longest(own, lane);
+	u32 from = own->vertex[longest][lane], to = own->vertex[(longest + 1) % 3][lane];
+	u32 beside = own->vertex[(longest + 2) % 3][lane];
+	u32 found = PHANTOM_PATCH_NONE, most = 0, i, l;
+
+	for (i = 0; i < set->block_count; i++) {
+		const struct block *block = &set->blocks[i];
+
+		for (l = 0; l < PHANTOM_BLOCK; l++) {
+			u32 shared = 2U * crossing_has(block, l, from) +
+				     2U * crossing_has(block, l, to) +
+				     crossing_has(block, l, beside);
+
+			if (shared <= most || !(row_lane(block->radius, l) > 0))
+				continue;
+			most = shared;
+			found = i * PHANTOM_BLOCK + l;
+		}
+	}
+	return found;
+}
+
+/*
+ * A crossing of a face without a shell, which is as good as an edge, becomes one of its neighbour: where the
+ * segment meets the neighbour's plane, since so low a face does not say where.
+ */
+static inline void crossing_hand_over(const struct phantom_float_set *set,
+				      const struct segment *segment, struct crossing *at)
+{
+	const struct block *block;
+	struct real3 g, begin;
+	real down;
+	u32 lane;
+
+	if (row_lane(set->blocks[at->patch / PHANTOM_BLOCK].radius, at->patch % PHANTOM_BLOCK) > 0)
+		return;
+	at->patch = crossing_neighbour(set, at->patch);
+	if (at->patch == PHANTOM_PATCH_NONE)
+		return;
+	block = &set->blocks[at->patch / PHANTOM_BLOCK];
+	lane = at->patch % PHANTOM_BLOCK;
+	g = row3_lane(&block->face_normal, lane);
+	begin = from_corner_lane(block, lane, 0, segment->begin_nm);
+	down = -real3_dot(g, (struct real3){real_from_nm(segment->way_nm[0]),
+					    real_from_nm(segment->way_nm[1]),
+					    real_from_nm(segment->way_nm[2])});
+	if (down != 0)
+		at->along = real_clamp(divide(real3_dot(g, begin), down), 0, REAL(1));
+}
 
 /*
  * The first crossing (or the last one) with along > after; of equals the patch with the lowest
@@ -223,7 +306,8 @@ static inline struct crossing crossing_find_beside(const struct phantom_float_se
 			crossed = mask_bits(candidates &
 					    crossing_inside(block, step, segment, way, &along));
 			if (crossed && beside)
-				crossed &= ~(ring_touches(block, beside->vertex) >>
+				crossed &= mask_bits(block->radius[step] > 0) &
+					   ~(ring_touches(block, beside->vertex) >>
 					     step * PHANTOM_LANES);
 			for (lane = 0; crossed >> lane; lane++) {
 				if (!(crossed >> lane & 1) || !(along[lane] > after))
@@ -240,6 +324,8 @@ static inline struct crossing crossing_find_beside(const struct phantom_float_se
 			}
 		}
 	}
+	if (found.patch != PHANTOM_PATCH_NONE)
+		crossing_hand_over(set, segment, &found);
 	return found;
 }
 

@@ -104,6 +104,24 @@ LANES_INLINE lanes lanes3_dot(struct lanes3 a, struct lanes3 b)
 	return mul_sum(a.x, b.x, a.y, b.y, a.z, b.z);
 }
 
+/* Where the result is known to be below 2^26 (mm, or of any unit): there is nothing to saturate. */
+LANES_INLINE struct lanes3 lanes3_scale_fitting(struct lanes3 a, lanes s)
+{
+	return (struct lanes3){mul_fitting(a.x, s), mul_fitting(a.y, s), mul_fitting(a.z, s)};
+}
+
+LANES_INLINE lanes lanes3_dot_fitting(struct lanes3 a, struct lanes3 b)
+{
+	return mul_sum_fitting(a.x, b.x, a.y, b.y, a.z, b.z);
+}
+
+LANES_INLINE struct lanes3 lanes3_cross_fitting(struct lanes3 a, struct lanes3 b)
+{
+	return (struct lanes3){mul_sub_fitting(a.y, b.z, a.z, b.y),
+			       mul_sub_fitting(a.z, b.x, a.x, b.z),
+			       mul_sub_fitting(a.x, b.y, a.y, b.x)};
+}
+
 LANES_INLINE struct lanes3 lanes3_cross(struct lanes3 a, struct lanes3 b)
 {
 	return (struct lanes3){mul_sub(a.y, b.z, a.z, b.y), mul_sub(a.z, b.x, a.x, b.z),
@@ -116,17 +134,17 @@ LANES_INLINE lanes lanes3_length(struct lanes3 a)
 	return lanes_length(a.x, a.y, a.z);
 }
 
-/* a / s */
-LANES_INLINE struct lanes3 lanes3_over(struct lanes3 a, lanes s)
-{
-	lanes_over(&a.x, &a.y, &a.z, s);
-	return a;
-}
-
 /* Of length 1; of no length stays so. */
 LANES_INLINE struct lanes3 lanes3_unit(struct lanes3 a)
 {
 	lanes_unit(&a.x, &a.y, &a.z);
+	return a;
+}
+
+/* Of length 1, of a vector of that length, which is not 0. */
+LANES_INLINE struct lanes3 lanes3_unit_of_length(struct lanes3 a, lanes length)
+{
+	lanes_unit_of_length(&a.x, &a.y, &a.z, length);
 	return a;
 }
 

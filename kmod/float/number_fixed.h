@@ -13,11 +13,23 @@
 #ifndef PHANTOM_FLOAT_NUMBER_FIXED_H
 #define PHANTOM_FLOAT_NUMBER_FIXED_H
 
+#include "root_table.h"
+
 #define FIXED_BITS 36
 #define FIXED_ONE (1LL << FIXED_BITS)
 #define FIXED_LIMIT (1LL << 61)
 
+/* With the address sanitizer, of either compiler, what is said to fit is looked at. */
+#ifdef __SANITIZE_ADDRESS__
+#define FIXED_CHECKED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define FIXED_CHECKED
+#endif
+#endif
+
 typedef s64 real;
+typedef s64 fine;
 typedef s64 mask_element;
 typedef s64 coordinate;
 
@@ -36,29 +48,67 @@ _Static_assert(PHANTOM_LANES == 1, "one fixed-point number to a lane");
 
 /* ---- products and quotients ------------------------------------------------ */
 
+/*
+ * a b: one multiplication. The compiler, where it knows the sign of a factor, would take it for one of
+ * 128 bits and multiply three times.
+ */
+LANES_INLINE __int128 fixed_product(s64 a, s64 b)
+{
+	u64 low, high;
+
+	asm("imulq %3" : "=a"(low), "=d"(high) : "%a"(a), "rm"(b) : "cc");
+	return (__int128)((__uint128_t)high << 64 | low);
+}
+
+/* Shifts and an or: shrd takes AMD's cores three times as long. */
 LANES_INLINE real fixed_shift(__int128 product)
 {
-	s64 high = (s64)(product >> 64);
+	u64 high = (u64)(product >> 64), low = (u64)product;
 
 	/* fits below the limit when nothing but the sign is above bit 61 + FIXED_BITS */
-	if ((u64)(high >> (FIXED_BITS - 3)) + 1 > 1)
-		return high < 0 ? -FIXED_LIMIT : FIXED_LIMIT;
-	return (real)(product >> FIXED_BITS);
+	if (__builtin_expect((high + (1ULL << (FIXED_BITS - 3))) >> (FIXED_BITS - 2) != 0, 0))
+		return high >> 63 ? -FIXED_LIMIT : FIXED_LIMIT;
+	return (real)(high << (64 - FIXED_BITS) | low >> FIXED_BITS);
+}
+
+/* The same where the caller knows that it fits, below 2^63: a trap, where tests look for that. */
+LANES_INLINE real fixed_shift_fitting(__int128 product)
+{
+#ifdef FIXED_CHECKED
+	if (product >> (63 + FIXED_BITS) != 0 && product >> (63 + FIXED_BITS) != -1)
+		__builtin_trap();
+#endif
+	return (real)((u64)(product >> 64) << (64 - FIXED_BITS) | (u64)product >> FIXED_BITS);
 }
 
 LANES_INLINE real real_mul(real a, real b)
 {
-	return fixed_shift((__int128)a * b);
+	return fixed_shift(fixed_product(a, b));
 }
 
 LANES_INLINE real real_mul_sub(real a, real b, real c, real d)
 {
-	return fixed_shift((__int128)a * b - (__int128)c * d);
+	return fixed_shift(fixed_product(a, b) - fixed_product(c, d));
 }
 
 LANES_INLINE real real_mul_sum(real a, real b, real c, real d, real e, real f)
 {
-	return fixed_shift((__int128)a * b + (__int128)c * d + (__int128)e * f);
+	return fixed_shift(fixed_product(a, b) + fixed_product(c, d) + fixed_product(e, f));
+}
+
+LANES_INLINE real real_mul_fitting(real a, real b)
+{
+	return fixed_shift_fitting(fixed_product(a, b));
+}
+
+LANES_INLINE real real_mul_sub_fitting(real a, real b, real c, real d)
+{
+	return fixed_shift_fitting(fixed_product(a, b) - fixed_product(c, d));
+}
+
+LANES_INLINE real real_mul_sum_fitting(real a, real b, real c, real d, real e, real f)
+{
+	return fixed_shift_fitting(fixed_product(a, b) + fixed_product(c, d) + fixed_product(e, f));
 }
 
 /* high 2^64 / divisor, rounded down; *remainder may be NULL. high < divisor. */
@@ -109,16 +159,39 @@ LANES_INLINE lanes lanes_mul_sum(lanes a, lanes b, lanes c, lanes d, lanes e, la
 	return (lanes){real_mul_sum(a[0], b[0], c[0], d[0], e[0], f[0])};
 }
 
+LANES_INLINE lanes lanes_mul_fitting(lanes a, lanes b)
+{
+	return (lanes){real_mul_fitting(a[0], b[0])};
+}
+
+LANES_INLINE lanes lanes_mul_sub_fitting(lanes a, lanes b, lanes c, lanes d)
+{
+	return (lanes){real_mul_sub_fitting(a[0], b[0], c[0], d[0])};
+}
+
+LANES_INLINE lanes lanes_mul_sum_fitting(lanes a, lanes b, lanes c, lanes d, lanes e, lanes f)
+{
+	return (lanes){real_mul_sum_fitting(a[0], b[0], c[0], d[0], e[0], f[0])};
+}
+
 /* Both real, or both lanes. */
 #define mul(a, b) _Generic((a), lanes : lanes_mul, default : real_mul)(a, b)
 #define divide(a, b) _Generic((a), lanes : lanes_divide, default : real_divide)(a, b)
 #define mul_sub(a, b, c, d) _Generic((a), lanes : lanes_mul_sub, default : real_mul_sub)(a, b, c, d)
 #define mul_sum(a, b, c, d, e, f)                                                                  \
 	_Generic((a), lanes : lanes_mul_sum, default : real_mul_sum)(a, b, c, d, e, f)
+#define mul_fitting(a, b) _Generic((a), lanes : lanes_mul_fitting, default : real_mul_fitting)(a, b)
+#define mul_sub_fitting(a, b, c, d)                                                                \
+	_Generic((a), lanes : lanes_mul_sub_fitting, default : real_mul_sub_fitting)(a, b, c, d)
+#define mul_sum_fitting(a, b, c, d, e, f)                                                          \
+	_Generic((a), lanes                                                                        \
+		 : lanes_mul_sum_fitting, default                                                  \
+		 : real_mul_sum_fitting)(a, b, c, d, e, f)
+
+/* a / parts, rounded down; a power of two. */
+#define lanes_part(a, parts) ((a) >> __builtin_ctz(parts))
 
 /* ---- roots ------------------------------------------------------------------ */
-
-#define FIXED_Q62(x) ((u64)((x)*4611686018427387904.0))
 
 LANES_INLINE u64 fixed_high(u64 a, u64 b)
 {
@@ -126,27 +199,34 @@ LANES_INLINE u64 fixed_high(u64 a, u64 b)
 }
 
 /*
- * sqrt(a) 2^32, within 2e-12 of it. With x = a 2^n in [1/4, 1) of 2^64: y = 1/sqrt(x) by Newton,
- * y (3 - x y^2) / 2, from the straight line that is nowhere off by more than 2.4 % on the octave.
+ * 1 / sqrt(x), Q62, within 1e-12 of it, of an x in [1/4, 1) of 2^64: y from the table, then one step of third
+ * order, y (1 + e / 2 + 3 e^2 / 8) with e = 1 - x y^2.
  */
+LANES_INLINE u64 fixed_inverse_root(u64 x)
+{
+	const u32 *line = root_table[(x >> (64 - ROOT_TABLE_BITS)) - ROOT_TABLE_FIRST];
+	u64 beyond = x << ROOT_TABLE_BITS >> 32;
+	u64 y = ((u64)line[0] << 31) - (line[1] * beyond >> 1);
+	/* Q60, below 2^47 */
+	s64 e = (s64)((1ULL << 60) - fixed_high(x, fixed_high(y, y)));
+	s64 e16 = e >> 16;
+	s64 step = (e >> 1) + ((e16 * e16 >> 28) * 3 >> 3);
+
+	return y + ((u64)(fixed_product((s64)(y >> 1), step) >> 64) << 5);
+}
+
+/* sqrt(a) 2^32, within 2e-12 of it. */
 static inline u64 fixed_root(u64 a)
 {
-	u32 shift, i;
-	u64 x, y;
+	u32 shift;
+	u64 x;
 
 	if (!a)
 		return 0;
+	/* a 2^shift in [1/4, 1) of 2^64; its root is x / sqrt(x), Q62 */
 	shift = (u32)__builtin_clzll(a) & ~1U;
 	x = a << shift;
-	y = x >> 63 ? FIXED_Q62(1.780888) - fixed_high(x, FIXED_Q62(0.799432))
-		    : FIXED_Q62(2.518556) - fixed_high(x, FIXED_Q62(2.261136));
-	for (i = 0; i < 3; i++) {
-		u64 one = fixed_high(x, fixed_high(y, y)); /* Q60 */
-
-		y = fixed_high(y, (3ULL << 60) - one) << 3;
-	}
-	/* x y = sqrt(x), Q62 */
-	return fixed_high(x, y) << 2 >> shift / 2;
+	return fixed_high(x, fixed_inverse_root(x)) << 2 >> shift / 2;
 }
 
 /* 0 of what is negative. */
@@ -155,29 +235,55 @@ LANES_INLINE real real_sqrt(real a)
 	return a > 0 ? (real)(fixed_root((u64)a) >> (32 - FIXED_BITS / 2)) : 0;
 }
 
+LANES_INLINE fine fine_sqrt(fine a)
+{
+	return real_sqrt(a);
+}
+
 LANES_INLINE lanes lanes_sqrt(lanes a)
 {
 	return (lanes){real_sqrt(a[0])};
 }
 
-/* |(x, y, z)|, as precise for nm as for m: squared when the largest is next to 2^60. */
-static inline real real_length(real x, real y, real z)
-{
-	u64 a = fixed_magnitude(x), b = fixed_magnitude(y), c = fixed_magnitude(z);
-	u64 most = a | b | c;
-	s32 shift;
-	__uint128_t sum;
+/* A vector made as long as fits, with what its length and its direction follow from. */
+struct fixed_vector {
+	s64 x, y, z; /* times 2^shift: the largest has 63 bits with its sign, or one less */
+	u64 inverse; /* Q61, of the root of its square's upper half, made one of [1/4, 1) by 4^even */
+	u64 square;
+	u32 shift, even;
+};
 
-	if (!most)
-		return 0;
-	shift = __builtin_clzll(most) - 3;
-	if (shift < 0)
-		return FIXED_LIMIT;
-	a <<= shift;
-	b <<= shift;
-	c <<= shift;
-	sum = (__uint128_t)a * a + (__uint128_t)b * b + (__uint128_t)c * c;
-	return (real)(fixed_root((u64)(sum >> 64)) >> shift);
+LANES_INLINE struct fixed_vector fixed_vector(real x, real y, real z)
+{
+	u64 most = fixed_magnitude(x) | fixed_magnitude(y) | fixed_magnitude(z);
+	struct fixed_vector out;
+
+	/* a vector of no length stays so */
+	out.shift = (u32)__builtin_clzll(most | 1) - 1;
+	out.x = (s64)((u64)x << out.shift);
+	out.y = (s64)((u64)y << out.shift);
+	out.z = (s64)((u64)z << out.shift);
+	/* 2^60 ... 2^64 */
+	out.square = (u64)(((__uint128_t)((__int128)out.x * out.x) +
+			    (__uint128_t)((__int128)out.y * out.y) +
+			    (__uint128_t)((__int128)out.z * out.z)) >>
+			   64);
+	out.even = (u32)(out.square >> 62 == 0);
+	out.square <<= 2 * out.even;
+	out.inverse = fixed_inverse_root(out.square) >> 1;
+	return out;
+}
+
+/* |(x, y, z)|, as precise for nm as for m. */
+LANES_INLINE real real_length(real x, real y, real z)
+{
+	struct fixed_vector v = fixed_vector(x, y, z);
+	u64 length;
+
+	/* the root is square inverse, Q61, of 2^64 */
+	length = fixed_high(v.square, v.inverse) << 3 >> v.even >> v.shift;
+	/* of saturated numbers up to 2^61.8 */
+	return length >> 62 ? 1LL << 62 : (real)length;
 }
 
 LANES_INLINE lanes lanes_length(lanes x, lanes y, lanes z)
@@ -202,28 +308,54 @@ LANES_INLINE u32 mask_bits(mask_lanes mask)
 	return (u32)mask[0] & 1;
 }
 
-/* x, y and z, each over s. */
-LANES_INLINE void lanes_over(lanes *x, lanes *y, lanes *z, lanes s)
+/* product 2^-bits, saturated; bits = 27 ... 126. */
+LANES_INLINE real fixed_shift_by(__int128 product, u32 bits)
 {
-	*x = lanes_divide(*x, s);
-	*y = lanes_divide(*y, s);
-	*z = lanes_divide(*z, s);
+	s64 high = (s64)(product >> 64);
+	u64 low = (u64)product;
+
+	if (bits >= 64)
+		high >>= bits - 64;
+	else if ((u64)(high >> (bits - 3)) + 1 > 1)
+		return high < 0 ? -FIXED_LIMIT : FIXED_LIMIT;
+	else
+		return (real)((u64)high << (64 - bits) | low >> bits);
+	return high > FIXED_LIMIT ? FIXED_LIMIT : high < -FIXED_LIMIT ? -FIXED_LIMIT : high;
 }
 
-/* Of length 1, to the last bit of the direction: made long before it is measured. No length stays so. */
+/* Of length 1. No length stays so. */
 LANES_INLINE void lanes_unit(lanes *x, lanes *y, lanes *z)
 {
-	u64 most = fixed_magnitude((*x)[0]) | fixed_magnitude((*y)[0]) | fixed_magnitude((*z)[0]);
-	s32 shift;
+	struct fixed_vector v = fixed_vector((*x)[0], (*y)[0], (*z)[0]);
+	u32 shift;
 
-	if (!most)
-		return;
-	/* 2^42: as long as quotients and the square of the length have room for */
-	shift = __builtin_clzll(most) - (64 - 42);
-	*x = shift > 0 ? *x << shift : *x;
-	*y = shift > 0 ? *y << shift : *y;
-	*z = shift > 0 ? *z << shift : *z;
-	lanes_over(x, y, z, lanes_length(*x, *y, *z));
+	/* a / |(a, b, c)| 2^36 = a inverse 2^-61 2^even 2^-64 2^36 */
+	shift = 25 - v.even;
+	*x = (lanes){(s64)(fixed_product(v.x, (s64)v.inverse) >> 64) >> shift};
+	*y = (lanes){(s64)(fixed_product(v.y, (s64)v.inverse) >> 64) >> shift};
+	*z = (lanes){(s64)(fixed_product(v.z, (s64)v.inverse) >> 64) >> shift};
+}
+
+/* The same, when it is already measured. */
+LANES_INLINE void lanes_unit_of_length(lanes *x, lanes *y, lanes *z, lanes length)
+{
+	(void)length;
+	lanes_unit(x, y, z);
+}
+
+/* sqrt(a / b) of what is not negative, b > 0: a / sqrt(a b). */
+LANES_INLINE lanes lanes_root_of_ratio(lanes a, lanes b)
+{
+	__uint128_t product = (__uint128_t)(u64)a[0] * (u64)b[0];
+	u64 high = (u64)(product >> 64), low = (u64)product, inverse;
+	u32 shift;
+
+	if (!product)
+		return (lanes){0};
+	shift = (u32)(high ? __builtin_clzll(high) : 64 + __builtin_clzll(low)) & ~1U;
+	/* Q61 */
+	inverse = fixed_inverse_root((u64)(product << shift >> 64)) >> 1;
+	return (lanes){fixed_shift_by(fixed_product(a[0], (s64)inverse), 89 - shift / 2)};
 }
 
 /* There is no infinity, and all is a number. */

@@ -14,6 +14,7 @@ typedef double real;
 typedef s64 mask_element;
 typedef double coordinate; /* a nm integer, exact in float64 */
 #else
+#define PHANTOM_REAL_SINGLE
 typedef float real;
 typedef s32 mask_element;
 typedef s32 coordinate;
@@ -24,6 +25,9 @@ typedef mask_element mask_lanes __attribute__((vector_size(PHANTOM_LANES * sizeo
 typedef coordinate nm_lanes __attribute__((vector_size(PHANTOM_LANES * sizeof(coordinate))));
 
 typedef double double_pair __attribute__((vector_size(16)));
+
+/* A real of which one at a time is worked on, where float32 would not do. */
+typedef double fine;
 
 /* A constant. */
 #define REAL(x) ((real)(x))
@@ -51,6 +55,14 @@ typedef double double_pair __attribute__((vector_size(16)));
 /* a b - c d, and a b + c d + e f */
 #define mul_sub(a, b, c, d) ((a) * (b) - (c) * (d))
 #define mul_sum(a, b, c, d, e, f) ((a) * (b) + (c) * (d) + (e) * (f))
+
+/* The same; in fixed point without a look at the size of the result. */
+#define mul_fitting mul
+#define mul_sub_fitting mul_sub
+#define mul_sum_fitting mul_sum
+
+/* a / parts; a power of two. */
+#define lanes_part(a, parts) ((a) * (REAL(1) / (parts)))
 
 #if defined(PHANTOM_REAL_DOUBLE)
 LANES_INLINE lanes lanes_sqrt(lanes a)
@@ -144,6 +156,12 @@ LANES_INLINE lanes lanes_length(lanes x, lanes y, lanes z)
 	return lanes_sqrt(x * x + y * y + z * z);
 }
 
+/* sqrt(a / b) */
+LANES_INLINE lanes lanes_root_of_ratio(lanes a, lanes b)
+{
+	return lanes_sqrt(a / b);
+}
+
 LANES_INLINE real real_sqrt(real a)
 {
 	return lanes_sqrt((lanes){} + a)[0];
@@ -163,6 +181,12 @@ LANES_INLINE void lanes_over(lanes *x, lanes *y, lanes *z, lanes s)
 LANES_INLINE void lanes_unit(lanes *x, lanes *y, lanes *z)
 {
 	lanes_over(x, y, z, lanes_max(lanes_length(*x, *y, *z), (lanes){} + REAL_SMALLEST));
+}
+
+/* The same, when it is already measured, and not 0. */
+LANES_INLINE void lanes_unit_of_length(lanes *x, lanes *y, lanes *z, lanes length)
+{
+	lanes_over(x, y, z, length);
 }
 
 /* False for an infinity or what is no number. */
@@ -268,6 +292,11 @@ LANES_INLINE wide wide_div(wide a, wide b)
 LANES_INLINE wide wide_sqrt(wide a)
 {
 	return __builtin_ia32_sqrtpd((double_pair){a, a})[0];
+}
+
+LANES_INLINE fine fine_sqrt(fine a)
+{
+	return wide_sqrt(a);
 }
 
 LANES_INLINE bool wide_less(wide a, wide b)

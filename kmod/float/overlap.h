@@ -26,7 +26,7 @@ static inline void overlap_planes(const struct phantom_float_set *set, struct pa
 		struct lanes3 q = from_corner(block, at->step, i, tip);
 
 		/* (x_i - P) x (x_(i+1) - P) = e x q */
-		at->plane[i] = lanes3_cross(row3_step(&block->edge[i].along, at->step), q);
+		at->plane[i] = lanes3_cross_fitting(row3_step(&block->edge[i].along, at->step), q);
 	}
 }
 
@@ -36,9 +36,10 @@ LANES_INLINE mask_lanes overlap_crossed(const struct phantom_float_set *set,
 {
 	const struct block *block = &set->blocks[at->block];
 	/* the plane of the triangle is met at d / -(g . way) of the segment */
-	lanes down = -lanes3_dot(row3_step(&block->face_normal, at->step), way);
-	mask_lanes met = (at->height > mul(lanes_all(OVERLAP_ENDS), down)) &
-			 (at->height < mul(lanes_all(REAL(1) - OVERLAP_ENDS), down)) & at->contact;
+	lanes down = -lanes3_dot_fitting(row3_step(&block->face_normal, at->step), way);
+	mask_lanes met = (at->height > mul_fitting(lanes_all(OVERLAP_ENDS), down)) &
+			 (at->height < mul_fitting(lanes_all(REAL(1) - OVERLAP_ENDS), down)) &
+			 at->contact;
 	lanes u, v, w, low, high;
 
 	if (!mask_bits(met))
@@ -77,6 +78,15 @@ static inline bool overlap_has_vertex(const struct block *block, u32 lane, u32 v
 {
 	return block->vertex[0][lane] == vertex || block->vertex[1][lane] == vertex ||
 	       block->vertex[2][lane] == vertex;
+}
+
+/* Do they have a vertex in common? */
+static inline bool overlap_touches(const struct block *own, u32 own_lane, const struct block *other,
+				   u32 other_lane)
+{
+	return overlap_has_vertex(other, other_lane, own->vertex[0][own_lane]) ||
+	       overlap_has_vertex(other, other_lane, own->vertex[1][own_lane]) ||
+	       overlap_has_vertex(other, other_lane, own->vertex[2][own_lane]);
 }
 
 /* Does the other patch share the edge or vertex on which the foot lies? */
@@ -118,8 +128,14 @@ static inline bool overlap_dropped(const struct phantom_float_set *set,
 		if (&steps[i] == own)
 			crossed &= ~(1U << lane);
 		for (l = 0; crossed >> l; l++) {
+			const struct block *other = &set->blocks[steps[i].block];
+			u32 other_lane = steps[i].step * PHANTOM_LANES + l;
+
 			if (!(crossed >> l & 1))
 				continue;
+			/* wherever D lies */
+			if (!overlap_touches(block, own_lane, other, other_lane))
+				return true;
 			if (!edges_known) {
 				struct real3 q = from_corner_lane(block, own_lane, 0, tip_nm);
 
@@ -127,8 +143,7 @@ static inline bool overlap_dropped(const struct phantom_float_set *set,
 							      rounding_mm(set));
 				edges_known = true;
 			}
-			if (!overlap_shares(block, own_lane, edges, &set->blocks[steps[i].block],
-					    steps[i].step * PHANTOM_LANES + l))
+			if (!overlap_shares(block, own_lane, edges, other, other_lane))
 				return true;
 		}
 	}

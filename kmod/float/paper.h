@@ -43,20 +43,20 @@ struct paper_wall {
 LANES_INLINE struct paper_wall paper_wall(const struct paper_edge *edge, u32 step, struct lanes3 q)
 {
 	struct lanes3 along = row3_step(&edge->along, step);
-	lanes t = mul(lanes3_dot(along, q), edge->inverse_length2[step]);
+	lanes t = mul(lanes3_dot_fitting(along, q), edge->inverse_length2[step]);
 	struct paper_wall out;
 	struct lanes3 wall;
 
 	t = lanes_min(lanes_max(t, lanes_all(0)), lanes_all(REAL(1)));
 	out.normal = lanes3_add(row3_step(&edge->normal, step),
-				lanes3_scale(row3_step(&edge->normal_along, step), t));
+				lanes3_scale_fitting(row3_step(&edge->normal_along, step), t));
 	wall = lanes3_add(row3_step(&edge->wall, step),
-			  lanes3_scale(row3_step(&edge->wall_along, step), t));
-	q = lanes3_sub(q, lanes3_scale(along, t));
-	out.distance =
-		mul(lanes3_dot(wall, q),
-		    lanes_sqrt(divide(lanes3_dot(out.normal, out.normal),
-				      lanes_max(lanes3_dot(wall, wall), lanes_all(REAL_TINY)))));
+			  lanes3_scale_fitting(row3_step(&edge->wall_along, step), t));
+	q = lanes3_sub(q, lanes3_scale_fitting(along, t));
+	out.distance = mul(lanes3_dot_fitting(wall, q),
+			   lanes_root_of_ratio(lanes3_dot_fitting(out.normal, out.normal),
+					       lanes_max(lanes3_dot_fitting(wall, wall),
+							 lanes_all(REAL_TINY))));
 	return out;
 }
 
@@ -75,15 +75,19 @@ LANES_INLINE struct lanes3 paper_normal(const struct paper_wall wall[3])
 		d[i] = mul(wall[i].distance, scale);
 		d[i] = lanes_keep(d[i] >= VANISHING, d[i]);
 	}
-	weight[0] = mul(d[1], d[2]);
-	weight[1] = mul(d[0], d[2]);
-	weight[2] = mul(d[0], d[1]);
+	weight[0] = mul_fitting(d[1], d[2]);
+	weight[1] = mul_fitting(d[0], d[2]);
+	weight[2] = mul_fitting(d[0], d[1]);
 	vanished = (weight[0] == zero) & (weight[1] == zero) & (weight[2] == zero);
 	for (i = 0; i < 3; i++)
 		weight[i] = lanes_select(vanished, lanes_keep(d[i] == zero, one), weight[i]);
-	n = lanes3_scale(wall[0].normal, weight[0]);
-	n = lanes3_add(n, lanes3_scale(wall[1].normal, weight[1]));
-	return lanes3_add(n, lanes3_scale(wall[2].normal, weight[2]));
+	n.x = mul_sum_fitting(wall[0].normal.x, weight[0], wall[1].normal.x, weight[1],
+			      wall[2].normal.x, weight[2]);
+	n.y = mul_sum_fitting(wall[0].normal.y, weight[0], wall[1].normal.y, weight[1],
+			      wall[2].normal.y, weight[2]);
+	n.z = mul_sum_fitting(wall[0].normal.z, weight[0], wall[1].normal.z, weight[1],
+			      wall[2].normal.z, weight[2]);
+	return n;
 }
 
 /* Lanes of a step within reach of the shell: a cheap test that rules out most of a set. */
@@ -93,7 +97,7 @@ LANES_INLINE mask_lanes shell_candidates(const struct block *block, u32 step, st
 	lanes radius = block->radius[step];
 
 	return (height > -rounding) & (height < radius) &
-	       within_shell(block, step, q, height, block->lean_paper[step],
+	       within_shell(block, step, q, height, block->lean_paper[step], true,
 			    lanes_all(PAPER_MARGIN * rounding));
 }
 
@@ -106,7 +110,7 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 {
 	struct lanes3 g = row3_step(&block->face_normal, step);
 	struct lanes3 q = from_corner(block, step, 0, tip);
-	lanes height = lanes3_dot(g, q);
+	lanes height = lanes3_dot_fitting(g, q);
 	lanes radius = block->radius[step];
 	mask_lanes contact = shell_candidates(block, step, q, height, rounding);
 	struct paper_wall wall[3];
@@ -127,7 +131,7 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 		return false;
 	n = paper_normal(wall);
 	n = lanes3_unit(n);
-	cosine = lanes3_dot(g, n);
+	cosine = lanes3_dot_fitting(g, n);
 	contact &= cosine > GRAZING;
 	/* under the plane by rounding is on it: a small cosine would make a length of that */
 	out->length =

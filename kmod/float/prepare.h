@@ -9,16 +9,16 @@
 #define PHANTOM_FLOAT_PREPARE_H
 
 #include "block.h"
-
-struct wide3 {
-	wide x, y, z;
-};
+#include "wide3.h"
 
 /*
  * A triangle lower than this has no plane to speak of: the nm grid of the border alone turns its
  * normal by 5 degrees.
  */
 #define SLIVER_HEIGHT_NM 16
+
+/* Of such a triangle's three normals, added up, that much must stand across its longest edge. */
+#define SLIT_NORMAL_MIN WIDE(1e-3)
 
 /*
  * A fan with less between its normals is too narrow to have a shell: over an edge, radians; over a
@@ -29,48 +29,6 @@ struct wide3 {
 
 /* Least |N| that is reckoned with: h <= R / |N| (normals of a patch more than 160 degrees apart). */
 #define NORMAL_LENGTH_MIN WIDE(0.15)
-
-LANES_INLINE struct wide3 wide3_sub(struct wide3 a, struct wide3 b)
-{
-	return (struct wide3){wide_sub(a.x, b.x), wide_sub(a.y, b.y), wide_sub(a.z, b.z)};
-}
-
-LANES_INLINE struct wide3 wide3_add(struct wide3 a, struct wide3 b)
-{
-	return (struct wide3){wide_add(a.x, b.x), wide_add(a.y, b.y), wide_add(a.z, b.z)};
-}
-
-LANES_INLINE struct wide3 wide3_scale(struct wide3 a, wide s)
-{
-	return (struct wide3){wide_mul(a.x, s), wide_mul(a.y, s), wide_mul(a.z, s)};
-}
-
-static inline wide wide3_dot(struct wide3 a, struct wide3 b)
-{
-	return wide_add(wide_add(wide_mul(a.x, b.x), wide_mul(a.y, b.y)), wide_mul(a.z, b.z));
-}
-
-static inline struct wide3 wide3_cross(struct wide3 a, struct wide3 b)
-{
-	return (struct wide3){wide_sub(wide_mul(a.y, b.z), wide_mul(a.z, b.y)),
-			      wide_sub(wide_mul(a.z, b.x), wide_mul(a.x, b.z)),
-			      wide_sub(wide_mul(a.x, b.y), wide_mul(a.y, b.x))};
-}
-
-static inline wide wide3_length(struct wide3 a)
-{
-	return wide_sqrt(wide3_dot(a, a));
-}
-
-LANES_INLINE struct wide3 wide3_from_integers(s64 x, s64 y, s64 z)
-{
-	return (struct wide3){wide_from_integer(x), wide_from_integer(y), wide_from_integer(z)};
-}
-
-LANES_INLINE wide wide_inverse(wide a)
-{
-	return wide_div(WIDE(1), a);
-}
 
 static inline void row_set(lanes *row, u32 lane, wide value)
 {
@@ -282,8 +240,33 @@ static inline void prepare_lean(struct block *block, u32 lane, const struct patc
 		row_set(block->lean_paper, lane, WIDE(LEAN_MOST));
 }
 
-static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p)
+/*
+ * Where no term of c, c' and c'' on [0, H], and no product of two of them, is larger than TAME_MOST, with
+ * the tip in reach: |q| <= R + 2 extent. 1 mm and a doubled m0 are for rounding and for the grid of normals.
+ */
+#define TAME_MOST WIDE(1 << 24)
+#define TAME_SLOPE_MOST WIDE(1 << 12)
+
+static inline bool patch_tame(const struct patch_geometry *p, wide height, wide extent)
 {
+	wide away = wide_add(wide_add(p->radius, wide_mul(WIDE(2), extent)), WIDE(1));
+	wide area1 = wide3_length(p->area1), area2 = wide3_length(p->area2);
+	wide c1 = wide_add(wide_mul(away, area1), WIDE(2));
+	wide c2 = wide_add(wide_mul(away, area2), wide_mul(WIDE(2), area1));
+	wide c3 = wide_mul(WIDE(2), area2);
+	wide curve = wide_add(c2, wide_mul(WIDE(3), wide_mul(c3, height)));
+	wide slope = wide_add(c1, wide_mul(wide_add(c2, curve), height));
+	wide value = wide_add(away, wide_mul(slope, height));
+
+	return wide_less(slope, TAME_SLOPE_MOST) && wide_less(curve, TAME_MOST) &&
+	       wide_less(wide_mul(value, wide_add(slope, curve)), TAME_MOST);
+}
+
+static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p,
+				 wide extent)
+{
+	wide height = wide_div(p->radius, normal_length_min(p));
+
 	row3_set(&block->face_normal, lane, p->lead);
 	row_set(block->area, lane, p->size);
 	row_set(block->order, lane, wide_from_integer(p->order));
@@ -292,13 +275,14 @@ static inline void prepare_shell(struct block *block, u32 lane, const struct pat
 	row_set(block->normal_area0, lane, wide3_dot(p->normal[0], p->lead));
 	row_set(block->normal_area1, lane, wide3_dot(p->normal[0], p->area1));
 	row_set(block->normal_area2, lane, wide3_dot(p->normal[0], p->area2));
-	row_set(block->height_limit, lane, wide_div(p->radius, normal_length_min(p)));
+	row_set(block->height_limit, lane, height);
+	block_set_tame(block, lane, patch_tame(p, height, extent));
 }
 
-static inline void prepare_patch(struct phantom_float_set *set, struct block *block, u32 lane,
+/* Corners and bounding sphere; returns its radius. */
+static inline wide prepare_place(struct phantom_float_set *set, struct block *block, u32 lane,
 				 const struct phantom_patch *patch, const struct patch_geometry *p)
 {
-	const struct float_material *material = &set->materials[patch->material];
 	/* x1 - x0 and x2 - x0 as seen from the centroid */
 	struct wide3 e1 = p->edge[0], e2 = wide3_scale(p->edge[2], WIDE(-1));
 	struct wide3 centre = wide3_scale(wide3_add(e1, e2), WIDE(1.0 / 3));
@@ -318,14 +302,26 @@ static inline void prepare_patch(struct phantom_float_set *set, struct block *bl
 	/* a little larger, so that rounding in the tick never rules out a patch in reach */
 	extent = wide_add(wide_mul(wide_sqrt(extent2), WIDE(1 + 1e-5)), WIDE(1e-5));
 	set->extent = real_max(set->extent, real_from_wide(extent));
-	block->radius[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->radius;
 	row3_set(&block->centre, lane, centre);
 	row_set(block->extent, lane, extent);
+	return extent;
+}
+
+static inline void prepare_patch(struct phantom_float_set *set, struct block *block, u32 lane,
+				 const struct phantom_patch *patch, const struct patch_geometry *p)
+{
+	const struct float_material *material = &set->materials[patch->material];
+	wide extent = prepare_place(set, block, lane, patch, p);
+
+	block->radius[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->radius;
 	block->stiffness[lane / PHANTOM_LANES][lane % PHANTOM_LANES] = material->stiffness;
 	prepare_edges(block, lane, p);
 	prepare_lean(block, lane, p);
-	prepare_shell(block, lane, p);
+	prepare_shell(block, lane, p, extent);
 }
+
+/* Farther than a tip can come from a patch, mm; its square is below 2^27. */
+#define IDLE_MM 1e4
 
 /* A lane that can never be in contact. */
 static inline void prepare_idle(struct block *block, u32 lane)
@@ -346,12 +342,46 @@ static inline void prepare_idle(struct block *block, u32 lane)
 	p.area2 = zero;
 	row_set(block->radius, lane, WIDE(-1));
 	row3_set(&block->centre, lane, zero);
-	row_set(block->extent, lane, WIDE(-1e6));
+	row_set(block->extent, lane, WIDE(-IDLE_MM));
 	row_set(block->stiffness, lane, WIDE(0));
 	prepare_edges(block, lane, &p);
 	row_set(block->lean, lane, WIDE(0));
 	row_set(block->lean_paper, lane, WIDE(0));
-	prepare_shell(block, lane, &p);
+	prepare_shell(block, lane, &p, WIDE(0));
+}
+
+/*
+ * The plane of a face too low to have one: through its longest edge, towards the mean of its normals. False for
+ * a face that is a point, and for normals along that edge.
+ */
+static inline bool slit_plane(const struct patch_geometry *p, struct wide3 *plane)
+{
+	struct wide3 normal = wide3_add(wide3_add(p->normal[0], p->normal[1]), p->normal[2]);
+	u32 longest = 0, i;
+	wide length;
+
+	for (i = 1; i < 3; i++)
+		if (wide_less(p->length2[longest], p->length2[i]))
+			longest = i;
+	if (!wide_less(WIDE(0), p->length2[longest]))
+		return false;
+	length = wide_div(wide3_dot(normal, p->edge[longest]), p->length2[longest]);
+	normal = wide3_sub(normal, wide3_scale(p->edge[longest], length));
+	length = wide3_length(normal);
+	if (!wide_less(SLIT_NORMAL_MIN, length))
+		return false;
+	*plane = wide3_scale(normal, wide_inverse(length));
+	return true;
+}
+
+/* A face that has no shell: never in contact, but no tip gets through it. See crossing_hand_over(). */
+static inline void prepare_slit(struct phantom_float_set *set, struct block *block, u32 lane,
+				const struct phantom_patch *patch, const struct patch_geometry *p,
+				struct wide3 plane)
+{
+	prepare_idle(block, lane);
+	prepare_place(set, block, lane, patch, p);
+	row3_set(&block->face_normal, lane, plane);
 }
 
 static inline u32 blocks_for(u32 patch_count)
@@ -400,6 +430,7 @@ static inline void prepare_header(const struct phantom_float_prepare *prepare)
 
 		material->stiffness = real_scaled(in->stiffness_mn_mm, WIDE(1e-3));
 		material->radius = real_scaled(in->radius_nm, WIDE(1e-6));
+		material->most = real_limit_force(mul(material->stiffness, material->radius));
 		/* mN s/m = 1e-6 N per mm/s */
 		material->damping = damped ? real_scaled(in->damping_mns_m, WIDE(1e-6)) : 0;
 		set->radius = real_max(set->radius, material->radius);
@@ -437,7 +468,9 @@ static inline void prepare_one(struct phantom_float_prepare *prepare, u32 index)
 	struct phantom_patch turned;
 	u32 at = lane_of_patch(prepare, index), lane = at % PHANTOM_BLOCK, i;
 	struct block *block = &set->blocks[at / PHANTOM_BLOCK];
+	bool face = patch->kind == PHANTOM_PATCH_FACE, measured;
 	struct patch_geometry geometry;
+	struct wide3 plane;
 
 	if (patch->kind == PHANTOM_PATCH_EDGE) {
 		turn_edge_fan(patch, &turned);
@@ -450,14 +483,18 @@ static inline void prepare_one(struct phantom_float_prepare *prepare, u32 index)
 	block->surface[lane] = patch->surface;
 	for (i = 0; i < 3; i++)
 		block->vertex[i][lane] = patch->vertex[i];
-	if ((patch->kind == PHANTOM_PATCH_FACE ? face_measure(patch, &geometry)
-					       : fan_measure(patch, &geometry)) &&
-	    patch_fits(&geometry)) {
+	measured = face ? face_measure(patch, &geometry) : fan_measure(patch, &geometry);
+	if (measured && patch_fits(&geometry)) {
 		prepare_patch(set, block, lane, patch, &geometry);
-	} else {
-		prepare_idle(block, lane);
-		prepare->refused++;
+		return;
 	}
+	prepare->refused++;
+	if (measured)
+		plane = geometry.lead;
+	if (face && (measured || slit_plane(&geometry, &plane)))
+		prepare_slit(set, block, lane, patch, &geometry, plane);
+	else
+		prepare_idle(block, lane);
 }
 
 /* The rest of the block in which lane `at` - 1 is the last one used. */

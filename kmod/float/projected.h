@@ -18,11 +18,12 @@
  *
  *   S = sum s k (R - h|N|) n        F = S min(1, kR / |S|)
  *
- * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than 1 / MONOTONE_PART
+ * Roots. Where c' keeps its sign on [0, H], h = R/|N| <= H, and varies less than MONOTONE_PARTS
  * fold (its Bernstein coefficients say so), there is one root or none, and from -c0/c1 it is found in
  * model.newton_steps steps: the accuracy knob. They are Halley's, a Newton step with the curvature in
  * it: an error of e becomes e^3, not e^2, for the same one division. Elsewhere the interval is split
- * at the critical points and each part that changes sign is solved by Newton kept in its bracket.
+ * at the critical points and each part that changes sign is solved by Newton kept in its bracket (cubic.h);
+ * float32 does that in float64, from the corners on (folded.h).
  *
  * Fans. Over an edge with two normals at an end, and over a vertex with three and more, the shell
  * is that of a triangle whose corners coincide: A0 = 0, and over a vertex A1 = 0 too. Divided by h,
@@ -45,35 +46,10 @@
 
 #include "paper.h"
 #include "combine.h"
+#include "barycentric.h"
+#include "cubic.h"
+#include "folded.h"
 #include "window.h"
-
-#define MONOTONE_PART REAL(0.25)
-
-/* Inner radius of the window, in units of rounding_mm(). */
-#define SOFT_WALL 8
-
-/*
- * The distance from a wall counts for at least that part of the distance within the offset triangle:
- * at a fold A.N = 0, and without it a root would lie on every wall there, however far from it in b.
- */
-#define IN_PLANE REAL(1.0 / 32)
-
-/*
- * A(h) = 0 solves the cubic as well, with b that mean nothing. It happens only where the interval is
- * split; there P must be found again from its b and h, up to that part of R.
- */
-#define FOUND_AGAIN REAL(1e-3)
-
-/* Bisection alone needs that many steps for float32's 24 bits; float64 ends as near as Newton gets. */
-#define BRACKET_STEPS 32
-
-struct cubic {
-	lanes c0, c1, c2, c3;
-};
-
-struct real_cubic {
-	real c0, c1, c2, c3;
-};
 
 /* Roots of the patches of a step: h and sign by [root][lane]; a patch has `count` of them. */
 struct step_roots {
@@ -92,167 +68,67 @@ struct shell_point {
 	lanes beyond; /* 1 - b0 */
 };
 
-LANES_INLINE lanes cubic_at(const struct cubic *c, lanes h)
-{
-	return mul(mul(mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
-}
-
-LANES_INLINE lanes cubic_slope(const struct cubic *c, lanes h)
-{
-	return mul(mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
-}
-
-static inline real real_cubic_at(const struct real_cubic *c, real h)
-{
-	return mul(mul(mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
-}
-
-/* The root in [low, high]; the cubic is negative at one end only and monotone between. */
-static inline real bracket_solve(const struct real_cubic *c, real low, real high, bool falling)
-{
-	real h = (low + high) / 2;
-	u32 i;
-
-	for (i = 0; i < BRACKET_STEPS; i++) {
-		real value = real_cubic_at(c, h);
-		real slope = mul(mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
-		real next;
-
-		if ((value < 0) == falling)
-			high = h;
-		else
-			low = h;
-		next = h - divide(value, slope);
-		/* written so that a step which is no number is refused as well */
-		if (!(next > low && next < high))
-			next = (low + high) / 2;
-		if (next == h)
-			break;
-		h = next;
-	}
-	return h;
-}
-
-/* Critical points of the cubic inside (low, high), ascending; returns how many. */
-static inline u32 critical_points(const struct real_cubic *c, real low, real high, real out[2])
-{
-	real discriminant = mul_sub(c->c2, c->c2, 3 * c->c1, c->c3);
-	real both, first, second;
-	u32 count = 0;
-
-	if (!(discriminant > 0))
-		return 0;
-	/* the stable form: no difference of nearly equal numbers */
-	both = c->c2 < 0 ? -c->c2 + real_sqrt(discriminant) : -c->c2 - real_sqrt(discriminant);
-	first = divide(both, 3 * c->c3);
-	second = divide(c->c1, both);
-	if (second < first) {
-		real swap = first;
-
-		first = second;
-		second = swap;
-	}
-	if (first > low && first < high)
-		out[count++] = first;
-	if (second > low && second < high)
-		out[count++] = second;
-	return count;
-}
-
-/* All roots of one lane in [low, high], by splitting at the critical points. */
-LANES_NOINLINE void split_roots(const struct real_cubic *c, real low, real high, u32 lane,
-				struct step_roots *roots)
-{
-	real ends[4], points[2];
-	u32 parts = 0, count = critical_points(c, low, high, points), found = 0, i;
-
-	ends[parts++] = low;
-	for (i = 0; i < count; i++)
-		ends[parts++] = points[i];
-	ends[parts] = high;
-	for (i = 0; i < parts; i++) {
-		bool negative = real_cubic_at(c, ends[i]) < 0;
-
-		if (negative == (real_cubic_at(c, ends[i + 1]) < 0))
-			continue;
-		roots->h[found][lane] = bracket_solve(c, ends[i], ends[i + 1], !negative);
-		roots->sign[found][lane] = negative ? REAL(-1) : REAL(1);
-		roots->valid[found][lane] = -1;
-		found++;
-	}
-}
-
-/* The cubics of a step. */
-LANES_INLINE struct cubic shell_cubic(const struct block *block, u32 step, struct lanes3 q,
-				      lanes height)
-{
-	struct cubic c;
-
-	c.c0 = height;
-	c.c1 = lanes3_dot(q, row3_step(&block->area1, step)) - block->normal_area0[step];
-	c.c2 = lanes3_dot(q, row3_step(&block->area2, step)) - block->normal_area1[step];
-	c.c3 = -block->normal_area2[step];
-	return c;
-}
-
-/* What Halley's method takes off h in the lanes of the mask: c c' / (c'^2 - c c''/2). */
-LANES_INLINE lanes cubic_correction(const struct cubic *c, lanes h, mask_lanes usual)
-{
-	lanes value = cubic_at(c, h);
-	lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(REAL(1)));
-	lanes square = mul(slope, slope);
-	lanes under = square - mul(value, mul(3 * c->c3, h) + c->c2);
-	/* bent too much for it: Newton's */
-	mask_lanes near = under > mul(square, lanes_all(REAL(0.25)));
-
-	return divide(mul(value, lanes_select(near, slope, lanes_all(REAL(1)))),
-		      lanes_select(near, under, slope));
-}
-
-/* Roots in [-rounding, H] of the candidate lanes. Returns the number of rounds in `roots`. */
-static inline u32 find_roots(const struct block *block, u32 step, const struct cubic *c,
+/* The root in [-rounding, H] of the candidate lanes that are monotone; returns whether there is any. */
+LANES_INLINE bool find_roots(const struct block *block, u32 step, const struct cubic *any,
 			     mask_lanes candidates, real rounding, u32 newton_steps,
 			     struct step_roots *roots)
 {
 	const lanes low = lanes_all(-rounding), zero = lanes_all(0);
 	lanes high = block->height_limit[step];
+	struct cubic c = cubic_tame(block, step, any);
 	/* Bernstein coefficients of c' on [0, H] */
-	lanes first = c->c1, middle = c->c1 + mul(c->c2, high), last = cubic_slope(c, high);
+	lanes first = c.c1, middle = c.c1 + mul_fitting(c.c2, high), last = cubic_slope(&c, high);
 	lanes least = lanes_min(lanes_min(first, middle), last);
 	lanes most = lanes_max(lanes_max(first, middle), last);
-	mask_lanes falling = (most < zero) & (mul(least, lanes_all(MONOTONE_PART)) >= most);
-	mask_lanes rising = (least > zero) & (mul(most, lanes_all(MONOTONE_PART)) <= least);
+	mask_lanes falling = (most < zero) & (lanes_part(least, MONOTONE_PARTS) >= most);
+	mask_lanes rising = (least > zero) & (lanes_part(most, MONOTONE_PARTS) <= least);
 	mask_lanes usual = candidates & (falling | rising);
-	u32 split, l, i, rounds = 1;
 	lanes h;
+	u32 i;
 
 	roots->split = candidates & ~usual;
-	split = mask_bits(roots->split);
-	h = lanes_min(
-		lanes_max(divide(-c->c0, lanes_select(usual, c->c1, lanes_all(REAL(1)))), low),
-		high);
-	for (i = 0; i < newton_steps; i++)
-		h = lanes_min(lanes_max(h - cubic_correction(c, h, usual), low), high);
-	roots->h[0] = h;
+	roots->valid[0] = usual & cubic_crosses(&c, low, high, first + middle + last);
+	if (!mask_bits(roots->valid[0]))
+		return false;
 	roots->sign[0] = lanes_select(falling, lanes_all(REAL(1)), lanes_all(REAL(-1)));
-	roots->valid[0] = usual & ((cubic_at(c, low) < zero) ^ (cubic_at(c, high) < zero));
-	if (!split)
-		return rounds;
-	for (i = 1; i < PROJECTED_ROOTS; i++) {
-		roots->h[i] = zero;
-		roots->sign[i] = zero;
+	h = lanes_min(lanes_max(divide(-c.c0, lanes_select(usual, c.c1, lanes_all(REAL(1)))), low),
+		      high);
+	for (i = 0; i < newton_steps; i++)
+		h = lanes_min(lanes_max(h - cubic_correction(&c, h, usual), low), high);
+	roots->h[0] = h;
+	return true;
+}
+
+#ifndef PHANTOM_REAL_SINGLE
+/* Beside them the roots of the lanes whose interval is split; `rounds` of them are there already. */
+static inline u32 find_split_roots(const struct block *block, u32 step, const struct cubic *c,
+				   real rounding, u32 rounds, struct step_roots *roots)
+{
+	u32 split = mask_bits(roots->split), l, i;
+
+	for (i = rounds; i < PROJECTED_ROOTS; i++) {
+		roots->h[i] = lanes_all(0);
+		roots->sign[i] = lanes_all(0);
 		roots->valid[i] = (mask_lanes){};
 	}
 	for (l = 0; l < PHANTOM_LANES; l++) {
-		struct real_cubic one = {c->c0[l], c->c1[l], c->c2[l], c->c3[l]};
+		struct fine_cubic one = {c->c0[l], c->c1[l], c->c2[l], c->c3[l]};
+		struct fine_roots found;
 
-		if (split >> l & 1)
-			split_roots(&one, -rounding, high[l], l, roots);
+		if (!(split >> l & 1))
+			continue;
+		split_roots(&one, -rounding, block->height_limit[step][l], &found);
+		for (i = 0; i < found.count; i++) {
+			roots->h[i][l] = found.h[i];
+			roots->sign[i][l] = found.falling[i] ? REAL(1) : REAL(-1);
+			roots->valid[i][l] = -1;
+		}
 	}
 	while (rounds < PROJECTED_ROOTS && mask_bits(roots->valid[rounds]))
 		rounds++;
 	return rounds;
 }
+#endif
 
 /* Is the root in the shell, and what does it give? */
 LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
@@ -261,77 +137,64 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const st
 {
 	const lanes one = lanes_all(REAL(1));
 	const real soft = SOFT_WALL * rounding;
-	struct lanes3 m0 = row3_step(&block->edge[0].normal, step);
-	struct lanes3 f1 = row3_step(&block->edge[0].normal_along, step);
-	struct lanes3 f2 = row3_step(&block->edge[2].normal_along, step); /* m0 - m2 = -f2 */
-	/* the offset edges E1, -E2, and w = P - X0 */
-	struct lanes3 e1 = lanes3_add(row3_step(&block->edge[0].along, step), lanes3_scale(f1, h));
-	struct lanes3 e2 = lanes3_add(row3_step(&block->edge[2].along, step), lanes3_scale(f2, h));
-	struct lanes3 w = lanes3_sub(from_corner(block, step, 0, tip), lanes3_scale(m0, h));
-	/* E2 - E1 and P - X1: b0 = 1 - b1 - b2 would be nothing but rounding at the end of a long edge */
-	struct lanes3 e0 =
-		lanes3_add(row3_step(&block->edge[1].along, step),
-			   lanes3_scale(row3_step(&block->edge[1].normal_along, step), h));
-	struct lanes3 w0 = lanes3_sub(from_corner(block, step, 1, tip),
-				      lanes3_scale(row3_step(&block->edge[1].normal, step), h));
 	/* A(h) / |A0| */
 	struct lanes3 area =
 		lanes3_add(row3_step(&block->face_normal, step),
 			   lanes3_scale(lanes3_add(row3_step(&block->area1, step),
 						   lanes3_scale(row3_step(&block->area2, step), h)),
 					h));
-	lanes size = mul(block->area[step], lanes3_dot(area, area));
-	lanes inverse, b0, b1, b2, turned, reach, length, radius = block->radius[step];
+	lanes turned, reach, length, least, radius = block->radius[step];
 	lanes power = one; /* h^order */
+	lanes b[3];
 	struct lanes3 n;
 	mask_lanes near_wall;
 
 	if (fan) {
 		power = lanes_select(block->order[step] > REAL(1), mul(h, h), h);
 		valid &= h > 0;
-		size = mul(size, power);
 	}
-	valid &= size > 0;
-	inverse = divide(one, lanes_select(valid, size, one));
-	b1 = mul(lanes3_dot(lanes3_cross(e2, w), area), inverse);
-	b2 = mul(lanes3_dot(lanes3_cross(e1, w), area), inverse);
-	b0 = mul(lanes3_dot(lanes3_cross(e0, w0), area), inverse);
-	n = lanes3_sub(lanes3_add(m0, lanes3_scale(f1, b1)), lanes3_scale(f2, b2));
-	turned = mul(mul(lanes_abs(lanes3_dot(area, n)), block->area[step]), power);
+	valid = barycentric_solve(block, step, tip, h, area, fan ? &power : NULL, valid, b);
+	/* m0 + b1 (m1 - m0) - b2 (m0 - m2) */
+	n = lanes3_add(row3_step(&block->edge[0].normal, step),
+		       lanes3_scale(row3_step(&block->edge[0].normal_along, step), b[1]));
+	n = lanes3_sub(n, lanes3_scale(row3_step(&block->edge[2].normal_along, step), b[2]));
+	turned = mul(lanes_abs(lanes3_dot(area, n)), block->area[step]);
+	if (fan)
+		turned = mul(turned, power);
 	/* |N x E_i| is at most the length of an offset edge */
 	reach = mul(lanes_all(2 * soft), block->extent[step] + h + soft);
-	valid &= (mul(b0, turned) >= -reach) & (mul(b1, turned) >= -reach) &
-		 (mul(b2, turned) >= -reach);
+	least = mul(lanes_min(lanes_min(b[0], b[1]), b[2]), turned);
+	valid &= least >= -reach;
 	out->accepted = valid;
 	if (!mask_bits(valid))
 		return;
 	if (mask_bits(split)) {
-		struct lanes3 away =
-			lanes3_add(w, lanes3_sub(lanes3_scale(e2, b2), lanes3_scale(e1, b1)));
+		struct lanes3 away = barycentric_away(block, step, tip, h, b);
 
 		valid &= ~split |
 			 (lanes3_dot(away, away) <=
 			  mul(mul(lanes_all(mul(FOUND_AGAIN, FOUND_AGAIN)), radius), radius));
 	}
 	length = lanes3_length(n);
-	valid &= (length > 0) & (mul(h, length) < radius) & (mul(h, length) > -rounding);
+	out->height = mul(h, length);
+	valid &= (length > 0) & (out->height < radius) & (out->height > -rounding);
 	out->accepted = valid;
 	if (!mask_bits(valid))
 		return;
-	out->height = mul(h, length);
-	out->normal = lanes3_over(n, lanes_select(valid, length, one));
+	out->normal = lanes3_unit_of_length(n, lanes_select(valid, length, one));
 	out->magnitude = lanes_limit_force(mul(block->stiffness[step], radius - out->height));
-	near_wall = valid & ((mul(b0, turned) <= reach) | (mul(b1, turned) <= reach) |
-			     (mul(b2, turned) <= reach));
+	near_wall = valid & (least <= reach);
 	out->near_wall = near_wall;
 	if (!mask_bits(near_wall))
 		return;
-	turned = lanes_max(turned, mul(mul(mul(lanes3_length(area), block->area[step]), power),
-				       lanes_all(IN_PLANE)));
-	out->part[0] = divide(mul(b0, turned), length);
-	out->part[1] = divide(mul(b1, turned), length);
-	out->part[2] = divide(mul(b2, turned), length);
-	out->beyond = one - b0;
+	reach = mul(lanes3_length(area), block->area[step]);
+	if (fan)
+		reach = mul(reach, power);
+	turned = lanes_max(turned, mul(reach, lanes_all(IN_PLANE)));
+	out->part[0] = divide(mul(b[0], turned), length);
+	out->part[1] = divide(mul(b[1], turned), length);
+	out->part[2] = divide(mul(b[2], turned), length);
+	out->beyond = one - b[0];
 }
 
 /* The part of the window that a root next to a wall has. */
@@ -367,6 +230,13 @@ LANES_NOINLINE real shell_weight(const struct block *block, u32 lane, const stru
 	return window_part(wall, count);
 }
 
+/* A monotone cubic has one root; split ones are worked on with the others but in float32, see folded.h. */
+#ifdef PHANTOM_REAL_SINGLE
+#define PROJECTED_ROUNDS 1
+#else
+#define PROJECTED_ROUNDS PROJECTED_ROOTS
+#endif
+
 /* Appends the roots of a step to `list`, patch by patch; returns how many. */
 static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
 				 real rounding, u32 newton_steps, u32 first_patch, bool fan,
@@ -374,42 +244,56 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 {
 	const real soft = SOFT_WALL * rounding;
 	struct lanes3 q = from_corner(block, step, 0, tip);
-	lanes height = lanes3_dot(row3_step(&block->face_normal, step), q);
-	/* a first guess alone, without a Newton step, may take a tip beside the shell for one in it */
-	lanes lean = newton_steps ? block->lean[step] : lanes_all(REAL(LEAN_MOST));
+	lanes height = lanes3_dot_fitting(row3_step(&block->face_normal, step), q);
+	/* a first guess alone, without a step, may take a tip beside the shell for one in it */
 	mask_lanes candidates = (lanes_abs(height) < block->radius[step]) &
-				within_shell(block, step, q, height, lean, lanes_all(4 * soft));
-	struct shell_point point[PROJECTED_ROOTS];
+				within_shell(block, step, q, height, block->lean[step],
+					     newton_steps > 0, lanes_all(4 * soft));
+	struct shell_point point[PROJECTED_ROUNDS];
 	struct step_roots roots;
 	struct cubic c;
-	u32 rounds, any = 0, count = 0, l, i;
+	u32 rounds, split, any = 0, count = 0, i;
 
 	if (!mask_bits(candidates))
 		return 0;
 	c = shell_cubic(block, step, q, height);
 	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
+	split = mask_bits(roots.split);
+#ifndef PHANTOM_REAL_SINGLE
+	if (split)
+		rounds = find_split_roots(block, step, &c, rounding, rounds, &roots);
+	split = 0;
+#endif
 	for (i = 0; i < rounds; i++) {
 		shell_evaluate(block, step, tip, roots.h[i], roots.valid[i], roots.split, rounding,
 			       fan, &point[i]);
 		any |= mask_bits(point[i].accepted);
 	}
-	for (l = 0; any >> l; l++) {
+	for (any |= split; any; any &= any - 1) {
+		u32 l = (u32)__builtin_ctz(any), lane = step * PHANTOM_LANES + l;
+
+#ifdef PHANTOM_REAL_SINGLE
+		if (split >> l & 1) {
+			count += folded_roots(block, lane, tip, rounding, first_patch + l,
+					      &list[count]);
+			continue;
+		}
+#endif
 		for (i = 0; i < rounds; i++) {
+			struct projected_root *root = &list[count];
+
 			if (!point[i].accepted[l])
 				continue;
-			list[count].normal = lanes3_lane(point[i].normal, l);
-			list[count].height = point[i].height[l];
-			list[count].magnitude = point[i].magnitude[l];
-			list[count].sign = roots.sign[i][l];
-			list[count].weight = REAL(1);
+			root->normal = lanes3_lane(point[i].normal, l);
+			root->height = point[i].height[l];
+			root->magnitude = point[i].magnitude[l];
+			root->sign = roots.sign[i][l];
+			root->weight = REAL(1);
+			root->patch = first_patch + l;
 			if (point[i].near_wall[l])
-				list[count].weight =
-					shell_weight(block, step * PHANTOM_LANES + l, &point[i],
-						     roots.h[i][l], roots.sign[i][l], soft, fan);
-			if (!(list[count].weight > 0))
-				continue;
-			list[count].patch = first_patch + l;
-			count++;
+				root->weight = shell_weight(block, lane, &point[i], roots.h[i][l],
+							    roots.sign[i][l], soft, fan);
+			count += root->weight > 0;
 		}
 	}
 	return count;

@@ -166,16 +166,21 @@ static inline u32 shell_projected_sum(const struct phantom_float_job *job,
 	for (; state->cursor < state->count && spent < SHELL_PIECE; state->cursor++) {
 		const struct projected_root *root = &scratch_projected(set)[state->cursor];
 		const struct float_material *material = shell_material(set, root->patch);
-		real fade = shell_root_fade(job, root);
-		real weight = root->weight < REAL(1) ? mul(root->weight, state->share) : REAL(1);
-		real magnitude = mul(mul(weight, root->magnitude), fade);
+		real magnitude = root->magnitude, fade = REAL(1);
 
-		state->sum = real3_add(state->sum,
-				       real3_scale(root->normal, mul(root->sign, magnitude)));
-		state->most = real_max(
-			state->most, real_limit_force(mul(material->stiffness, material->radius)));
+		if (root->weight < REAL(1))
+			magnitude = mul(mul(root->weight, state->share), magnitude);
+		if (set->rim_block_count) {
+			fade = shell_root_fade(job, root);
+			magnitude = mul(magnitude, fade);
+		}
+		state->sum =
+			real3_add(state->sum, real3_scale(root->normal,
+							  root->sign < 0 ? -magnitude : magnitude));
+		state->most = real_max(state->most, material->most);
 		state->forces += magnitude;
-		state->damping += mul(mul(magnitude, material->damping), fade);
+		if (material->damping > 0)
+			state->damping += mul(mul(magnitude, material->damping), fade);
 		if (root->sign < 0) {
 			out->folded++;
 		} else if (root->height < out->deepest) {
@@ -316,7 +321,7 @@ static inline u32 shell_paper_add(const struct phantom_float_job *job, const str
 
 	for (l = 0; l < PHANTOM_LANES; l++) {
 		u32 patch = at->block * PHANTOM_BLOCK + at->step * PHANTOM_LANES + l;
-		real fade;
+		real fade = REAL(1), damping;
 
 		if (!(magnitude[l] > 0))
 			continue;
@@ -324,11 +329,15 @@ static inline u32 shell_paper_add(const struct phantom_float_job *job, const str
 			out->deepest = at->height[l];
 			out->deepest_patch = patch;
 		}
-		fade = shell_fade(job, patch, lanes3_lane(at->normal, l), at->length[l]);
-		magnitude[l] = mul(magnitude[l], fade);
+		if (set->rim_block_count) {
+			fade = shell_fade(job, patch, lanes3_lane(at->normal, l), at->length[l]);
+			magnitude[l] = mul(magnitude[l], fade);
+			spent += shell_fade_cost(set);
+		}
 		state->forces += magnitude[l];
-		state->damping += mul(mul(magnitude[l], shell_material(set, patch)->damping), fade);
-		spent += shell_fade_cost(set);
+		damping = shell_material(set, patch)->damping;
+		if (damping > 0)
+			state->damping += mul(mul(magnitude[l], damping), fade);
 	}
 	columns_add(&state->columns, at->step, at->normal, magnitude);
 	return spent;

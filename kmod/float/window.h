@@ -17,6 +17,15 @@
 
 #include "block.h"
 
+/* Inner radius of the window, in units of rounding_mm(). */
+#define SOFT_WALL 8
+
+/*
+ * The distance from a wall counts for at least that part of the distance within the offset triangle:
+ * at a fold A.N = 0, and without it a root would lie on every wall there, however far from it in b.
+ */
+#define IN_PLANE REAL(1.0 / 32)
+
 #define WINDOW_CORNERS 8
 #define WINDOW_WALLS 4 /* of a triangle; the fourth is a fan's end */
 

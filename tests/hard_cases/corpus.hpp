@@ -83,6 +83,7 @@ struct Case {
     std::string outcome{};   ///< what a user must know, where that is not plain
     std::string
         fault{}; ///< known and not yet mended: asked for numbers that do not wrap, the table has the rest
+    bool fault_in_fixed = false; ///< the fault is one of fixed point alone
 };
 
 /// All of them, in the order of their kinds.

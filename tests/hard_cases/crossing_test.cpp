@@ -66,6 +66,57 @@ TEST(Path, ExactlyThroughEdgesIsNeverMissed)
     }
 }
 
+/// A plate that lies anyhow, with a sliver (vertices 0, 1, 2) some nm high along its middle: a cap, whose
+/// third vertex lies over the edge between the other two, or a needle, whose third lies beside the second.
+Shape slit_plate(std::mt19937& random, double height_mm, bool cap)
+{
+    std::normal_distribution<double> any;
+    const Vec3 normal = unit({any(random), any(random), any(random)});
+    const Vec3 along = unit(cross(normal, {any(random), any(random), any(random)}));
+    const Vec3 across = cross(normal, along);
+    const auto at = [&](double x, double y) { return on_grid(add(scale(x, along), scale(y, across))); };
+    Shape plate;
+    plate.vertices = {at(-3, 0), at(3, 0), at(cap ? 0.7 : 3, height_mm), at(0.5, 3), at(-0.5, -3)};
+    plate.faces = {{0, 1, 2}, {0, 2, 3}, {1, 0, 4}};
+    if (cap)
+        plate.faces.push_back({2, 1, 3});
+    plate.normals.assign(plate.vertices.size(), on_unit_grid(normal));
+    return plate;
+}
+
+TEST(Path, ThroughASliverTooLowForAPlaneIsHeld)
+{
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> part(0, 1), low(1e-6, 15e-6);
+    unsigned refused = 0, strokes = 0;
+    for (int i = 0; i < 120; ++i) {
+        const Shape plate = slit_plate(random, low(random), i % 2 == 0);
+        const auto triangles = plate.triangles(1, 1);
+        for (const phantom_float_ops* ops : sections()) {
+            for (const std::uint32_t proxy : {PHANTOM_PROXY_PAPER, PHANTOM_PROXY_CONSTRAINED}) {
+                Settings settings = with_proxy();
+                settings.proxy = proxy;
+                Contact contact(*ops, triangles, settings);
+                refused += contact.refused();
+                for (int k = 0; k < 20; ++k) {
+                    const double u = part(random), v = part(random) * (1 - u);
+                    const Vec3 in =
+                        on_grid(add(scale(1 - u - v, plate.vertices[0]),
+                                    add(scale(u, plate.vertices[1]), scale(v, plate.vertices[2]))));
+                    const Vec3 way = on_grid(scale(0.3, plate.normals[0]));
+                    const Touch touch = stroke(contact, add(in, way), subtract(in, way));
+                    ASSERT_TRUE(touch.inside) << ops->name << " sliver " << i << " stroke " << k;
+                    // V where the path went in, and the force of a plate
+                    ASSERT_LE(length(subtract(touch.proxy, in)), 2e-5) << ops->name;
+                    ASSERT_NEAR(length(touch.force), 1.3, 1e-4) << ops->name;
+                    ++strokes;
+                }
+            }
+        }
+    }
+    EXPECT_GT(refused, strokes / 20 / 2) << "slivers must be among them that are refused";
+}
+
 TEST(Path, InManyTicksThroughAnyPlaceOfASphereIsNeverMissed)
 {
     const auto triangles = sphere(3, 10).triangles(1, 1);

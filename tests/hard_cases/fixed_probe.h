@@ -13,9 +13,13 @@ extern "C" {
 
 int64_t fixed_probe_mul(int64_t a, int64_t b);
 int64_t fixed_probe_mul_sub(int64_t a, int64_t b, int64_t c, int64_t d);
+int64_t fixed_probe_mul_fitting(int64_t a, int64_t b);
+int64_t fixed_probe_mul_sub_fitting(int64_t a, int64_t b, int64_t c, int64_t d);
 int64_t fixed_probe_divide(int64_t a, int64_t b);
 int64_t fixed_probe_sqrt(int64_t a);
 int64_t fixed_probe_length(int64_t x, int64_t y, int64_t z);
+int64_t fixed_probe_root_of_ratio(int64_t a, int64_t b);
+void fixed_probe_unit(int64_t vector[3]);
 int64_t fixed_probe_from_nm(int64_t nm);
 int64_t fixed_probe_to_nm(int64_t mm);
 int32_t fixed_probe_to_integer(int64_t value, int32_t scale, uint32_t* saturated);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -62,6 +63,27 @@ TEST(FixedNumber, ProductsAreRoundedDownAndSaturated)
     EXPECT_EQ(fixed_probe_mul(-limit, one), -limit);
 }
 
+TEST(FixedNumber, ProductsThatFitAreTheSameWithoutALookAtTheirSize)
+{
+    std::mt19937_64 random(8);
+    const Int128 most = Int128{1} << 62;
+    int fitting = 0;
+    for (int i = 0; i < samples; ++i) {
+        const std::int64_t a = any_real(random), b = any_real(random), c = any_real(random),
+                           d = any_real(random);
+        const Int128 product = Int128{a} * b >> FIXED_PROBE_BITS,
+                     difference = (Int128{a} * b - Int128{c} * d) >> FIXED_PROBE_BITS;
+        if (product > -most && product < most) {
+            ASSERT_EQ(fixed_probe_mul_fitting(a, b), static_cast<std::int64_t>(product)) << a << " * " << b;
+        }
+        if (difference <= -most || difference >= most)
+            continue;
+        ASSERT_EQ(fixed_probe_mul_sub_fitting(a, b, c, d), static_cast<std::int64_t>(difference));
+        ++fitting;
+    }
+    EXPECT_GT(fitting, samples / 4);
+}
+
 TEST(FixedNumber, QuotientsAreRoundedToZeroAndSaturatedNeverTrapped)
 {
     std::mt19937_64 random(2);
@@ -105,6 +127,41 @@ TEST(FixedNumber, LengthsAreAsPreciseForShortVectorsAsForLongOnes)
         ASSERT_NEAR(fixed_probe_length(x, y, z), exact, 1 + 3e-12L * exact) << x << ' ' << y << ' ' << z;
     }
     EXPECT_EQ(fixed_probe_length(0, 0, 0), 0);
+}
+
+TEST(FixedNumber, DirectionsAreAsPreciseForShortVectorsAsForLongOnes)
+{
+    std::mt19937_64 random(9);
+    for (int i = 0; i < samples; ++i) {
+        const int shift = static_cast<int>(random() % 40);
+        const std::array<std::int64_t, 3> v{any_real(random) >> shift, any_real(random) >> shift,
+                                            any_real(random) >> shift};
+        const long double length =
+            std::sqrt(static_cast<long double>(v[0]) * v[0] + static_cast<long double>(v[1]) * v[1] +
+                      static_cast<long double>(v[2]) * v[2]);
+        std::array<std::int64_t, 3> unit = v;
+        fixed_probe_unit(unit.data());
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            ASSERT_NEAR(unit[axis], length > 0 ? v[axis] / length * one : 0, 2) << v[0] << ' ' << v[1];
+    }
+    std::array<std::int64_t, 3> none{};
+    fixed_probe_unit(none.data());
+    EXPECT_EQ(none, (std::array<std::int64_t, 3>{}));
+}
+
+TEST(FixedNumber, RootsOfRatiosAreWithinThreePartsInATrillion)
+{
+    std::mt19937_64 random(10);
+    for (int i = 0; i < samples; ++i) {
+        const std::int64_t a = std::abs(any_real(random)),
+                           b = std::max<std::int64_t>(1, std::abs(any_real(random)));
+        const long double exact = std::sqrt(static_cast<long double>(a) / b) * one;
+        const long double most = limit;
+        ASSERT_NEAR(fixed_probe_root_of_ratio(a, b), std::min(exact, most), 2 + 3e-12L * exact)
+            << a << " / " << b;
+    }
+    EXPECT_EQ(fixed_probe_root_of_ratio(0, one), 0);
+    EXPECT_EQ(fixed_probe_root_of_ratio(one, one), one - 1) << "rounded down";
 }
 
 TEST(FixedNumber, NanometresComeBack)

@@ -44,6 +44,11 @@ std::span<const std::uint32_t> proxies_of(const Case& hard)
     return std::span(both).first(hard.penetrates ? 2 : 1);
 }
 
+bool has_fault(const Case& hard, const phantom_float_ops& ops)
+{
+    return !hard.fault.empty() && (!hard.fault_in_fixed || ops.isa == PHANTOM_ISA_FIXED);
+}
+
 double rounding_of(const phantom_float_ops& ops, const Case& hard)
 {
     const double micronewton = 1e-6 / (hard.stiffness * hard.radius); // forces are whole ones
@@ -285,7 +290,7 @@ std::vector<std::string> broken(const Case& hard, const phantom_float_ops& ops, 
         out.push_back(fmt::format("{} results were no number", m.not_numbers));
     if (m.wrapped > 0)
         out.push_back(fmt::format("{} forces wrapped", m.wrapped));
-    if (!hard.fault.empty())
+    if (has_fault(hard, ops))
         return out;
     if (m.excess > 1 + rounding_of(ops, hard) && !hard.saturates)
         out.push_back(fmt::format("|F| is {:.6f} k (R + depth)", m.excess));

@@ -23,12 +23,15 @@ inline constexpr std::array<Variant, 5> variants{{
     {"paper, combine=paper", PHANTOM_MODEL_PAPER, PHANTOM_COMBINE_PAPER, 3},
 }};
 
-/// With fewer Newton steps `projected` is bounded and no more. Where triangles are coarse beside R neighbours
+/// With fewer steps `projected` is bounded and no more. Where triangles are coarse beside R neighbours
 /// do not find the same root at their wall then, and a tip on it counts twice or half.
 inline constexpr std::uint32_t exact_steps = 2;
 
 /// The proxies that a case is run with: `constrained`, and `paper` too where the tip goes inside.
 std::span<const std::uint32_t> proxies_of(const Case& hard);
+
+/// Has the case a known fault with that arithmetic?
+bool has_fault(const Case& hard, const phantom_float_ops& ops);
 
 /// What rounding may do to a force, as a part of kR.
 double rounding_of(const phantom_float_ops& ops, const Case& hard);

@@ -46,7 +46,11 @@ unsigned print_case(const Case& hard)
     const Course course(hard, table_coarseness);
     unsigned faults = 0;
     fmt::print("{} / {}{}{}{}{}\n", title(hard.kind), hard.name, hard.outcome.empty() ? "" : ": ",
-               hard.outcome, hard.fault.empty() ? "" : "\n  KNOWN FAULT: ", hard.fault);
+               hard.outcome,
+               hard.fault.empty()    ? ""
+               : hard.fault_in_fixed ? "\n  KNOWN FAULT of fixed point: "
+                                     : "\n  KNOWN FAULT: ",
+               hard.fault);
     for (const Variant& variant : variants) {
         std::vector<std::pair<std::string, std::string>> rows; // figures, arithmetics
         std::vector<std::string> sentences;
@@ -80,7 +84,7 @@ struct Summary {
     double paper = 0;
     std::uint64_t gaps = 0, doubles = 0, wrong = 0, not_numbers = 0;
 
-    void add(const Case& hard, const Variant& variant, const Measured& m)
+    void add(const Case& hard, const Variant& variant, const Measured& m, bool fault)
     {
         excess = std::max(excess, hard.saturates ? 0 : m.excess);
         not_numbers += m.not_numbers;
@@ -90,7 +94,7 @@ struct Summary {
             paper = std::max(paper, m.outside.step);
         if (variant.model != PHANTOM_MODEL_PROJECTED || variant.newton_steps < exact_steps)
             return;
-        double& step = hard.projected_step < measured && hard.fault.empty() ? promised : elsewhere;
+        double& step = hard.projected_step < measured && !fault ? promised : elsewhere;
         step = std::max(step, m.outside.step);
         gaps += m.gaps;
         doubles += hard.once ? m.doubles : 0;
@@ -103,11 +107,14 @@ void print_markdown()
     Summary faults;
     for (const Case& hard : corpus()) {
         const Course course(hard, table_coarseness);
-        Summary& summary = hard.fault.empty() ? kinds[hard.kind] : faults;
-        ++summary.cases;
+        kinds[hard.kind].cases += hard.fault.empty() || hard.fault_in_fixed;
+        faults.cases += !hard.fault.empty();
         for (const Variant& variant : variants)
-            for (const phantom_float_ops* ops : sections())
-                summary.add(hard, variant, run_all_proxies(course, hard, *ops, variant));
+            for (const phantom_float_ops* ops : sections()) {
+                const bool fault = has_fault(hard, *ops);
+                (fault ? faults : kinds[hard.kind])
+                    .add(hard, variant, run_all_proxies(course, hard, *ops, variant), fault);
+            }
     }
     fmt::print(
         "| | cases | \\|F\\| | step | else | `paper` | gaps | doubles | wrong side | no number | refused |\n"

@@ -105,6 +105,7 @@ scene::LoadOptions SceneOptions::load_options() const
     options.prepare.weld_mm = weld_mm;
     options.prepare.crease_deg = crease_deg;
     options.prepare.split_mm = split_mm;
+    options.prepare.simplify = simplify;
     options.unit = unit;
     options.stiffness_n_mm = stiffness_n_mm;
     options.radius_mm = radius_mm;

@@ -57,6 +57,7 @@ struct SceneOptions {
     std::optional<double> stiffness_n_mm, radius_mm;
     double fit_mm = 0, weld_mm = 0, crease_deg = 60, split_mm = 0;
     std::string prepare = "full";
+    std::optional<mesh::SimplifyOptions> simplify; ///< of `fdhctl prepare`
     bool use_cache = true;
 
     void add(CLI::App& app);

@@ -59,6 +59,9 @@ std::string steps_text(const mesh::Report& r)
              .add(r.nonmanifold_edges, "edge of more than two faces", "edges of more than two faces")
              .add(r.nonmanifold_vertices, "vertex of several fans", "vertices of several fans")
              .add(r.vertices_separated, "vertex added", "vertices added"));
+    if (r.faces_simplified)
+        text += fmt::format("{:<11} {} faces left out, {:.4g} mm at most from what was there\n", "simplified",
+                            r.faces_simplified, r.simplify_error_mm);
     line("split", Parts().add(r.faces_split, "face added", "faces added"));
     line("normals", Parts().add(r.normals_repaired, "repaired", "repaired"));
     if (r.moved_max_mm > 0)
@@ -120,6 +123,8 @@ nlohmann::json report_json(const scene::Object& object)
             {"unorientable_edges", report.unorientable_edges},
             {"crease_edges", report.crease_edges},
             {"normals_repaired", report.normals_repaired},
+            {"faces_simplified", report.faces_simplified},
+            {"simplify_error_mm", report.simplify_error_mm},
             {"faces_split", report.faces_split},
             {"vertices", report.vertices},
             {"faces", report.faces},

@@ -2,9 +2,12 @@
 // fdhctl prepare: the preprocessing alone, a mesh file in, a mesh file out.
 #include "mesh/prepare.hpp"
 
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/progress_bar.hpp"
@@ -16,8 +19,30 @@ namespace phantom::fdhctl {
 
 namespace {
 
+/// --simplify: a number of triangles, or a distance.
+struct SimplifyWish {
+    std::string word;
+    mesh::SimplifyOptions options;
+};
+
+/// A whole number is one of triangles; "0.05" and "5mm" are distances. False when it is neither.
+bool read_simplify(std::string word, mesh::SimplifyOptions& out)
+{
+    const bool has_unit = word.size() > 2 && word.ends_with("mm");
+    if (has_unit)
+        word.resize(word.size() - 2);
+    const char* last = word.data() + word.size();
+    if (!has_unit && word.find('.') == std::string::npos) {
+        const auto [end, error] = std::from_chars(word.data(), last, out.faces);
+        return error == std::errc() && end == last && out.faces >= 1;
+    }
+    const auto [end, error] = std::from_chars(word.data(), last, out.error_mm);
+    return error == std::errc() && end == last && out.error_mm > 0 && std::isfinite(out.error_mm);
+}
+
 struct Options {
     SceneOptions scene;
+    SimplifyWish simplify;
     std::string output;
     double feed_rate_hz = feeder::FeederOptions{}.rate_hz;
     bool json = false;
@@ -25,7 +50,12 @@ struct Options {
 
 int run(const Options& options)
 {
-    const Result<scene::Scene> scene = load_scene(options.scene);
+    SceneOptions wanted = options.scene;
+    if (!options.simplify.word.empty()) {
+        wanted.simplify = options.simplify.options;
+        (void)read_simplify(options.simplify.word, *wanted.simplify);
+    }
+    const Result<scene::Scene> scene = load_scene(wanted);
     if (!scene)
         return fail(scene.error());
     if (scene->objects.size() != 1)
@@ -49,6 +79,39 @@ int run(const Options& options)
     return exit_success;
 }
 
+void add_simplify(CLI::App& app, SimplifyWish& wish)
+{
+    const auto check = [](std::string& text) {
+        mesh::SimplifyOptions ignored;
+        return read_simplify(text, ignored)
+                   ? std::string()
+                   : fmt::format("expected a number of triangles, or a distance as 0.05 or 5mm, found '{}'",
+                                 text);
+    };
+    CLI::Option* simplify =
+        app.add_option("--simplify", wish.word,
+                       "leave out triangles: down to so many, or as long as the surface stays within that "
+                       "distance; creases and borders are kept")
+            ->check(CLI::Validator(check, ""))
+            ->type_name("N|MM");
+    app.add_option("--simplify-error", wish.options.error_mm,
+                   "no point of the surface farther from the other than this, by samples [no bound with N]")
+        ->check(positive())
+        ->type_name("MM")
+        ->needs(simplify);
+    app.add_option("--simplify-normal", wish.options.normal_deg, "no triangle turns by more")
+        ->check(CLI::Range(1.0, 89.0))
+        ->type_name("DEG")
+        ->capture_default_str()
+        ->needs(simplify);
+    app.add_option("--simplify-aspect", wish.options.aspect,
+                   "no triangle becomes longer than so many of its heights")
+        ->check(CLI::Range(2.0, 1e6))
+        ->type_name("R")
+        ->capture_default_str()
+        ->needs(simplify);
+}
+
 } // namespace
 
 Run add_prepare(CLI::App& app)
@@ -62,6 +125,7 @@ Run add_prepare(CLI::App& app)
         ->required()
         ->type_name("OUT.ply");
     options->scene.add_preparation(app);
+    add_simplify(app, options->simplify);
     add_feed_rate(app, options->feed_rate_hz, "sets per second that the tip's speed is reckoned with");
     app.add_flag("--json", options->json, "the report as one line of JSON");
     return [options] { return run(*options); };

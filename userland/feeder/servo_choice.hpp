@@ -13,7 +13,7 @@ namespace phantom::feeder {
 inline constexpr std::uint32_t default_rate_hz = 1000;
 inline constexpr int default_newton_steps = 2;
 
-/// Defaults: projected, 2 Newton steps, bounded, float; proxy constrained where `features`
+/// Defaults: projected, 2 of its steps, bounded, float; proxy constrained where `features`
 /// (phantom_info) offers it, else paper. Fails for an unknown word, listing the known ones.
 Result<phantom_model> choose_model(const scene::ServoSettings& asked, const scene::ServoSettings& scene,
                                    std::uint64_t features);

@@ -17,7 +17,7 @@ struct CloseFile {
 
 } // namespace
 
-Result<std::string> load_bytes(const std::filesystem::path& file)
+Result<std::uintmax_t> size_of(const std::filesystem::path& file)
 {
     const std::string name = file.string();
     std::error_code error;
@@ -35,11 +35,19 @@ Result<std::string> load_bytes(const std::filesystem::path& file)
         return Error{name, "size unknown: " + error.message()};
     if (size == 0)
         return Error{name, "is empty"};
+    return size;
+}
 
+Result<std::string> load_bytes(const std::filesystem::path& file)
+{
+    const auto size = size_of(file);
+    if (!size)
+        return size.error();
+    const std::string name = file.string();
     const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(name.c_str(), "rb"));
     if (!stream)
         return Error{name, std::string("cannot be opened: ") + std::strerror(errno)};
-    std::string bytes(size, '\0');
+    std::string bytes(*size, '\0');
     const std::size_t got = std::fread(bytes.data(), 1, bytes.size(), stream.get());
     if (got != bytes.size())
         return Error{name, "could be read only up to byte " + std::to_string(got) + " of " +

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <streambuf>
 #include <string>
@@ -12,7 +13,10 @@
 
 namespace phantom::mesh {
 
-/// Reads a regular file whole. Errors: missing, a directory, not a regular file, no permission, empty.
+/// Of a regular file. Errors: missing, a directory, not a regular file, empty.
+Result<std::uintmax_t> size_of(const std::filesystem::path& file);
+
+/// Reads a regular file whole. Errors: those of size_of(), no permission.
 Result<std::string> load_bytes(const std::filesystem::path& file);
 
 /// Number of the line (from 1) in which byte `offset` lies.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/groups.hpp"
+
 namespace phantom::mesh {
 
 namespace {
@@ -23,6 +25,41 @@ std::vector<std::uint64_t> links_of(const std::vector<Triple>& faces, const Edge
     return links;
 }
 
+/// No two faces of an edge of two run the same way.
+bool all_agree(const std::vector<Triple>& faces, const EdgeIndex& edges)
+{
+    bool agree = true;
+    edges.for_each([&](std::uint32_t, std::uint32_t, std::span<const HalfEdge> halves) {
+        if (halves.size() == 2 && from_vertex(faces, halves[0]) == from_vertex(faces, halves[1]))
+            agree = false;
+    });
+    return agree;
+}
+
+/// Where there is nothing to turn: the usual case, a few times faster than the walk.
+Components joined_components(const std::vector<Triple>& faces, const EdgeIndex& edges)
+{
+    Groups groups(faces.size());
+    edges.for_each([&groups](std::uint32_t, std::uint32_t, std::span<const HalfEdge> halves) {
+        if (halves.size() == 2)
+            groups.join(halves[0] / 3, halves[1] / 3);
+    });
+    Components found;
+    found.turn.assign(faces.size(), false);
+    found.of_face.resize(faces.size());
+    for (std::uint32_t f = 0; f < faces.size(); ++f) {
+        const std::uint32_t first = groups.first(f);
+        if (first == f) {
+            found.of_face[f] = static_cast<std::uint32_t>(found.size.size());
+            found.size.push_back(0);
+        }
+        found.of_face[f] = found.of_face[first];
+        ++found.size[found.of_face[f]];
+    }
+    found.turned.assign(found.size.size(), 0);
+    return found;
+}
+
 } // namespace
 
 /// Faces that agree already are reached before any is turned, so a second run finds nothing to turn. Each
@@ -34,6 +71,8 @@ Components components_of(const std::vector<Triple>& faces, const EdgeIndex& edge
         std::uint32_t face;
         bool turn;
     };
+    if (all_agree(faces, edges))
+        return joined_components(faces, edges);
     const std::vector<std::uint64_t> links = links_of(faces, edges);
     Components found;
     found.of_face.assign(faces.size(), no_neighbour);

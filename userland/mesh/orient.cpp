@@ -57,7 +57,9 @@ std::uint64_t drop_duplicates(Soup& soup, const EdgeIndex& edges)
     std::vector<bool> duplicate(soup.faces.size(), false);
     std::vector<Side> sides;
     edges.for_each([&](std::uint32_t, std::uint32_t, std::span<const HalfEdge> halves) {
-        if (halves.size() < 2)
+        // two that run opposite ways are the usual case
+        if (halves.size() < 2 ||
+            (halves.size() == 2 && from_vertex(soup.faces, halves[0]) != from_vertex(soup.faces, halves[1])))
             return;
         sides.clear();
         for (const HalfEdge half : halves)

@@ -30,6 +30,8 @@ Status check_options(const PrepareOptions& options)
         return bad("weld", options.weld_mm, "a distance in mm of 0 or more");
     if (!(options.split_mm >= 0) || !std::isfinite(options.split_mm))
         return bad("--split", options.split_mm, "a length in mm above 0, or 0 for none");
+    if (options.simplify && !options.full)
+        return Error{"--simplify", "needs a mesh that was repaired", "--prepare full"};
     if (!(options.crease_deg >= 0 && options.crease_deg <= 180))
         return bad("--crease", options.crease_deg, "an angle of 0 ... 180 degrees");
     return success();
@@ -102,6 +104,30 @@ bool close_gaps(Soup& soup, std::unique_ptr<EdgeIndex>& edges, double weld_mm, R
     return true;
 }
 
+/// With the normals that the result will have, but for what is left out.
+void simplify_soup(Soup& soup, const EdgeIndex& edges, const PrepareOptions& options, Report& report)
+{
+    Report own; // what the steps count is counted once more, of what is left
+    const std::vector<Triple> neighbours = neighbours_of(soup, edges, own, true);
+    separate_fans(soup, neighbours, report);
+    corner_normals(soup, neighbours, options.crease_deg, own);
+    report.normals_repaired += own.normals_repaired;
+    SimplifyOptions wanted = *options.simplify;
+    wanted.crease_deg = options.crease_deg;
+    const SimplifyResult result = simplify(soup, wanted);
+    drop_unused_vertices(soup);
+    report.faces_simplified = result.faces_removed;
+    report.simplify_error_mm = result.error_mm;
+    if (result.faces_removed == 0)
+        report.warnings.push_back("no triangle could be left out within the bounds (a larger "
+                                  "--simplify-error, --simplify-normal or "
+                                  "--simplify-aspect)");
+    if (result.faces_aside > 0)
+        report.warnings.push_back(fmt::format("{} faces were not simplified: they do not fit together with "
+                                              "those round them",
+                                              result.faces_aside));
+}
+
 Error no_usable_face(const Report& report, const std::string& name)
 {
     return Error{name, fmt::format("has no usable face: {} without area, {} not finite, of {}",
@@ -113,11 +139,16 @@ Error no_usable_face(const Report& report, const std::string& name)
 std::string words_of(const PrepareOptions& options)
 {
     // By structured binding: an option that is added and left out here does not compile.
-    const auto& [full, scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided, progress] = options;
+    const auto& [full, scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided, simplify, progress] = options;
     static_cast<void>(progress);
     // Doubles in hexadecimal, so that not a bit is lost.
-    return fmt::format("{} scale {:a} fit {:a} weld {:a} crease {:a} split {:a}{}", full ? "full" : "none",
-                       scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided ? " two-sided" : "");
+    std::string words =
+        fmt::format("{} scale {:a} fit {:a} weld {:a} crease {:a} split {:a}{}", full ? "full" : "none",
+                    scale, fit_mm, weld_mm, crease_deg, split_mm, two_sided ? " two-sided" : "");
+    if (simplify)
+        words += fmt::format(" simplify {} {:a} {:a} {:a}", simplify->faces, simplify->error_mm,
+                             simplify->normal_deg, simplify->aspect);
+    return words;
 }
 
 Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::string& name)
@@ -166,6 +197,10 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
         if (soup.faces.empty())
             return no_usable_face(report, name);
         progress(0.6);
+        if (options.simplify) {
+            simplify_soup(soup, *edges, options, report);
+            index_again();
+        }
         if (options.split_mm > 0) {
             if (const auto status = split_long_edges(soup, options.split_mm, name, report); !status)
                 return status.error();

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/simplify.hpp"
 
 namespace phantom::mesh {
 
@@ -21,15 +23,16 @@ struct PrepareOptions {
     double crease_deg = 60.0; ///< edges sharper than this keep two normals
     double split_mm = 0.0;    ///< edges longer than this are bisected; 0: off
     bool two_sided = false;   ///< faces get backs, see two_sided.hpp
-    std::function<void(double)> progress{}; ///< 0 ... 1, may be empty
+    std::optional<SimplifyOptions> simplify{}; ///< before the split; its crease_deg is the one above
+    std::function<void(double)> progress{};    ///< 0 ... 1, may be empty
 };
 
 /// Every option that the result depends on, in words: two that differ give different words.
 std::string words_of(const PrepareOptions& options);
 
 /// What was found and what was done about it. Every input face is in faces or in exactly one dropped count:
-/// faces_read (polygons cut into triangles) = faces - faces_split - faces_cut + faces_zero_area +
-/// faces_duplicate + faces_nonfinite.
+/// faces_read (polygons cut into triangles) = faces - faces_split - faces_cut + faces_simplified +
+/// faces_zero_area + faces_duplicate + faces_nonfinite.
 struct Findings {
     std::uint64_t vertices_read = 0, faces_read = 0;
     std::uint64_t polygons_crossed = 0; ///< cross themselves: their triangles overlap
@@ -54,6 +57,8 @@ struct Findings {
     std::uint64_t unorientable_edges = 0; ///< two faces that cannot agree on a side (a Moebius strip)
     std::uint64_t crease_edges = 0;
     std::uint64_t normals_repaired = 0;    ///< corner normals that cancelled to zero or did not fit
+    std::uint64_t faces_simplified = 0;    ///< faces that simplification left out
+    double simplify_error_mm = 0;          ///< how far it took the surface, and the surface it, by samples
     std::uint64_t faces_split = 0;         ///< faces added by bisection
     std::uint64_t vertices = 0, faces = 0; ///< of the result
     double moved_max_mm = 0; ///< no part of the surface was moved farther by welding, sewing and cutting

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reading mesh files: PLY (ASCII, both endians), OBJ, STL (ASCII, binary), OFF. Coordinates stay doubles.
+// Reading mesh files: PLY (ASCII, both endians), OBJ, STL (ASCII, binary), OFF; and through the program
+// fdhread VTP, legacy VTK, 3DS and glTF. Coordinates stay doubles where the format has them.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +10,14 @@
 
 namespace phantom::mesh {
 
+/// For messages, after "expected".
+inline constexpr const char* mesh_extensions = ".ply, .obj, .stl, .off, .vtp, .vtk, .3ds, .gltf or .glb";
+
 /// True for an extension (any case) that read() knows.
 bool is_mesh_file(const std::filesystem::path& file);
+
+/// True for glTF, whose coordinates are in metres (and whose y axis points up) by its specification.
+bool is_in_metres(const std::filesystem::path& file);
 
 /// Reads a whole file or nothing; memory is bounded by the file's size, whatever its header says. Polygons
 /// are fanned round their first corner; vertices and faces in errors count from 0, lines from 1. Errors name

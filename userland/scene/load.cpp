@@ -51,7 +51,8 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
                                      const LoadOptions& options)
 {
     mesh::PrepareOptions prepare = options.prepare;
-    const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or("mm")));
+    const char* const of_format = mesh::is_in_metres(object.mesh) ? "m" : "mm";
+    const std::string unit = options.unit.value_or(object.unit.value_or(file.unit.value_or(of_format)));
     // A shape's sizes are in mm already.
     prepare.scale *= object.shape ? 1.0 : millimetres_in(unit).value_or(1.0);
     prepare.two_sided = object.two_sided;
@@ -152,9 +153,8 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     std::error_code ignored;
     if (!is_scene_file(file) && !mesh::is_mesh_file(file) && std::filesystem::is_regular_file(file, ignored))
         return Error{file.string(),
-                     fmt::format("unknown extension \"{}\", expected a scene file .toml or a mesh "
-                                 ".ply, .obj, .stl or .off",
-                                 file.extension().string())};
+                     fmt::format("unknown extension \"{}\", expected a scene file .toml or a mesh {}",
+                                 file.extension().string(), mesh::mesh_extensions)};
     auto entries = is_scene_file(file) ? read_scene_file(file) : Result<SceneFile>(file_round(file));
     if (!entries)
         return entries.error();

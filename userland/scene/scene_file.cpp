@@ -149,7 +149,7 @@ void read_mesh(TomlReader& object, const std::filesystem::path& scene, Faults& f
     if (!std::filesystem::exists(out.mesh))
         object.fault("mesh", "no such file: " + out.mesh.string());
     else if (!mesh::is_mesh_file(out.mesh))
-        object.fault("mesh", fmt::format("is \"{}\", expected a file .ply, .obj, .stl or .off", *mesh));
+        object.fault("mesh", fmt::format("is \"{}\", expected a file {}", *mesh, mesh::mesh_extensions));
     out.unit = object.word("unit", unit_words);
     out.fit_mm = object.number("fit_mm", range::length_mm);
     out.weld_mm = object.number("weld_mm", range::length_mm);

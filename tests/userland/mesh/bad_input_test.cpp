@@ -65,7 +65,8 @@ TEST(MeshReadBad, EmptyFile)
 
 TEST(MeshReadBad, UnknownExtension)
 {
-    expect_error("a.gltf", "anything", ": ", "expected .ply, .obj, .stl or .off");
+    expect_error("a.step", "anything", ": ",
+                 "expected .ply, .obj, .stl, .off, .vtp, .vtk, .3ds, .gltf or .glb");
     expect_error("mesh", "anything", ": ", "unknown extension");
 }
 

@@ -127,7 +127,8 @@ TEST(SceneFile, MeshAndShape)
     EXPECT_EQ(error_of("[[object]]\n\nmesh = \"gone.ply\"\n"),
               "a.toml:3: object 1: mesh: no such file: gone.ply");
     EXPECT_EQ(error_of("[[object]]\nmesh = \"a.toml\"\n"),
-              "a.toml:2: object 1: mesh: is \"a.toml\", expected a file .ply, .obj, .stl or .off");
+              "a.toml:2: object 1: mesh: is \"a.toml\", expected a file .ply, .obj, .stl, .off, .vtp, .vtk, "
+              ".3ds, .gltf or .glb");
     EXPECT_EQ(error_of("[[object]]\nname = \"a\"\n"),
               "a.toml:1: object 1: mesh: is missing, expected mesh = \"FILE\" or shape = \"sphere\" or "
               "\"ellipsoid\" or \"torus\" or \"box\" or \"cylinder\" or \"cone\" or \"superquadric\" or "
