@@ -28,6 +28,12 @@ inline constexpr Colour component_y{0.000, 0.620, 0.451}; ///< Okabe-Ito bluish 
 inline constexpr Colour component_z{0.800, 0.475, 0.655}; ///< Okabe-Ito reddish purple
 inline constexpr Colour path_in_air{0.45, 0.47, 0.51};
 inline constexpr Colour warning{0.70, 0.13, 0.09};
+inline constexpr Colour crease{0.10, 0.12, 0.16};
+inline constexpr Colour fault{0.80, 0.00, 0.55};
+/// Where triangles are too fine for the hand, the finest first: Okabe-Ito vermilion, orange, and a light
+/// orange.
+inline constexpr std::array<Colour, 3> thin{
+    {{0.835, 0.369, 0.000}, {0.902, 0.624, 0.000}, {0.965, 0.850, 0.520}}};
 } // namespace palette
 
 /// The colour map of forces: viridis at `fraction`, clamped to 0 ... 1; NaN counts as 0.

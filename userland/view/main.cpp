@@ -10,6 +10,7 @@
 #include "view/display.hpp"
 #include "view/live_view.hpp"
 #include "view/options.hpp"
+#include "view/survey_view.hpp"
 #include "view/trace_view.hpp"
 
 namespace {
@@ -46,8 +47,8 @@ Status check_input(const Options& options)
 
 Status run(const Options& options)
 {
-    for (const Status& status :
-         {check_input(options), check_output(options.screenshot), check_output(options.chart)})
+    for (const Status& status : {check_input(options), check_output(options.screenshot),
+                                 check_output(options.chart), check_output(options.survey)})
         if (!status)
             return status;
     const auto need = options.offscreen() ? Display::Need::offscreen : Display::Need::window;
@@ -55,6 +56,8 @@ Status run(const Options& options)
     auto display = Display::acquire(need, options.width, options.height);
     if (!display)
         return display.error();
+    if (options.survey)
+        return run_survey_view(options);
     return options.trace ? run_trace_view(options) : run_live_view(options);
 }
 

@@ -12,8 +12,9 @@ namespace phantom::view {
 
 namespace {
 
-constexpr const char* about = "Touch a scene with the mouse, or look at a recorded touch.\n"
-                              "SCENE is a mesh (PLY, OBJ, STL, OFF) or a scene file (.toml).";
+constexpr const char* about =
+    "Touch a scene with the mouse, or look at a recorded touch.\n"
+    "SCENE is a mesh (PLY, OBJ, STL, OFF, VTP, VTK, 3DS, glTF) or a scene file (.toml).";
 
 constexpr const char* keys =
     "In the window:\n"
@@ -88,6 +89,7 @@ void add_scene_options(CLI::App& app, Options& options, std::string& prepare, bo
         ->check(CLI::PositiveNumber);
     app.add_option("--crease", options.load.prepare.crease_deg, "edges sharper than this stay sharp, degrees")
         ->check(CLI::Range(0.0, 180.0));
+    app.add_option("--split", options.load.prepare.split_mm, "edges longer than this are cut, mm");
     app.add_option("--prepare", prepare, "full, or none: faces and normals as the file gives them")
         ->check(CLI::IsMember({"full", "none"}));
     app.add_flag("!--no-cache", use_cache, "prepare the meshes anew");
@@ -120,6 +122,13 @@ std::variant<Options, int> parse_options(int argc, char** argv)
         ->needs(trace);
     app.add_option("--screenshot", options.screenshot, "write a PNG and end; needs no display");
     app.add_option("--chart", options.chart, "write force over time as a PNG; needs no display");
+    app.add_option(
+           "--survey", options.survey,
+           "write a PNG of creases, rims, faults and of where triangles are too fine, and end; needs no "
+           "display")
+        ->excludes(trace);
+    app.add_option("--feed-rate", options.feed_hz, "sets a second that --survey reckons with")
+        ->check(CLI::PositiveNumber);
     app.add_flag("--window", options.window, "open a window all the same; pictures are taken at the end");
     app.add_option("--size", size, "of the window or picture, e.g. 1280x800");
     app.add_option("--camera", camera, "AZ,EL,ZOOM: azimuth and elevation in degrees, 1 = all in view");

@@ -27,13 +27,15 @@ struct Options {
     std::optional<std::size_t> at_row;
 
     std::optional<std::filesystem::path> screenshot, chart;
-    bool window = false; ///< a window although a screenshot is asked for
+    std::optional<std::filesystem::path> survey; ///< a picture of what preparation made of the scene
+    double feed_hz = 250;                        ///< sets a second that the survey reckons with
+    bool window = false;                         ///< a window although a screenshot is asked for
     int width = 1280, height = 800;
     std::optional<CameraAngles> camera;
     bool json = false;
 
     /// Pictures only: no window, works without a display.
-    [[nodiscard]] bool offscreen() const { return (screenshot || chart) && !window; }
+    [[nodiscard]] bool offscreen() const { return survey || ((screenshot || chart) && !window); }
 };
 
 /// The options, or the exit status when the program shall end here: 0 after --help, 2 after a usage error

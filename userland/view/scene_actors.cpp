@@ -5,7 +5,6 @@
 
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
-#include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -20,6 +19,8 @@ namespace {
 
 constexpr std::size_t outline_points = 20000;
 
+} // namespace
+
 vtkSmartPointer<vtkMatrix4x4> matrix_of(const fdh::Pose& pose)
 {
     auto matrix = vtkSmartPointer<vtkMatrix4x4>::New();
@@ -32,8 +33,6 @@ vtkSmartPointer<vtkMatrix4x4> matrix_of(const fdh::Pose& pose)
     }
     return matrix;
 }
-
-} // namespace
 
 Vec3 rotate(const fdh::Pose& pose, const Vec3& local)
 {

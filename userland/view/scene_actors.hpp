@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <vtkActor.h>
+#include <vtkMatrix4x4.h>
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
@@ -18,6 +19,9 @@ namespace phantom::view {
 Vec3 to_world(const fdh::Pose& pose, const Vec3& local);
 /// The same for a direction.
 Vec3 rotate(const fdh::Pose& pose, const Vec3& local);
+
+/// A pose as VTK takes it.
+vtkSmartPointer<vtkMatrix4x4> matrix_of(const fdh::Pose& pose);
 
 /// A mesh in its object's frame. A corner's own normal is kept: where corners of one vertex have different
 /// normals (a crease), the vertex becomes several points. Cell i is face i.

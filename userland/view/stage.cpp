@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 #include <vtkCamera.h>
-#include <vtkLightKit.h>
 #include <vtkProperty.h>
 
 #include "view/colour.hpp"
 #include "view/picture_file.hpp"
+#include "view/renderer_look.hpp"
 
 namespace phantom::view {
 
@@ -21,27 +21,6 @@ constexpr double chart_part = 0.32;   ///< of the height
 constexpr double spot_opacity = 0.62; ///< of the surface in the close-up: a tip inside is seen
 constexpr double row_lines = 1.42;    ///< height of a line of figures, in font sizes
 constexpr double legend_lines = 3.9;  ///< height of the legend, in font sizes
-
-void light(vtkRenderer* renderer)
-{
-    // A warm key light over the left shoulder, fill and back lights that leave no black.
-    vtkNew<vtkLightKit> kit;
-    kit->SetKeyLightIntensity(0.82);
-    kit->SetKeyLightAngle(42, -28);
-    kit->SetKeyToFillRatio(2.6);
-    kit->SetKeyToBackRatio(3.2);
-    kit->SetKeyToHeadRatio(3.4);
-    kit->SetKeyLightWarmth(0.54);
-    kit->SetFillLightWarmth(0.46);
-    kit->AddLightsToRenderer(renderer);
-}
-
-void set_background(vtkRenderer* renderer, const Colour& bottom, const Colour& top)
-{
-    renderer->GradientBackgroundOn();
-    renderer->SetBackground(bottom[0], bottom[1], bottom[2]);
-    renderer->SetBackground2(top[0], top[1], top[2]);
-}
 
 /// The largest of 1, 2, 5 times a power of ten not above x.
 double round_down(double x)
