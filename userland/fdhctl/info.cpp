@@ -11,6 +11,7 @@
 #include "fdhctl/command_line.hpp"
 #include "fdhctl/level_report.hpp"
 #include "fdhctl/mesh_report.hpp"
+#include "fdhctl/view.hpp"
 #include "feeder/servo_choice.hpp"
 #include "study/tick_cost.hpp"
 
@@ -25,6 +26,7 @@ struct Options {
     SceneOptions scene;
     LevelsOption levels;
     double feed_rate_hz = feeder::FeederOptions{}.rate_hz;
+    std::optional<std::string> picture;
     bool json = false;
 };
 
@@ -201,6 +203,7 @@ Run add_info(CLI::App& app)
     options->scene.add(app);
     options->levels.add(app, "auto, or the scene's");
     add_feed_rate(app, options->feed_rate_hz, "sets per second that speeds are reckoned with");
+    add_picture(app, options->picture);
     app.add_flag("--json", options->json, "as one line of JSON");
     return [options] {
         const Result<Facts> facts = gather(*options);
@@ -214,7 +217,7 @@ Run add_info(CLI::App& app)
             std::printf("%s\n", json_of(*facts).dump().c_str());
         else
             std::printf("%s", text_of(*facts).c_str());
-        return exit_success;
+        return draw_picture(options->picture, options->scene.arguments(), options->feed_rate_hz);
     };
 }
 

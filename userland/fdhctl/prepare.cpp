@@ -14,6 +14,7 @@
 #include "fdhctl/command_line.hpp"
 #include "fdhctl/level_report.hpp"
 #include "fdhctl/mesh_report.hpp"
+#include "fdhctl/view.hpp"
 
 namespace phantom::fdhctl {
 
@@ -45,6 +46,7 @@ struct Options {
     SimplifyWish simplify;
     std::string output;
     double feed_rate_hz = feeder::FeederOptions{}.rate_hz;
+    std::optional<std::string> picture;
     bool json = false;
 };
 
@@ -76,7 +78,11 @@ int run(const Options& options)
         std::printf("%scoverage    %s\nwritten to  %s\n", report_text(object).c_str(),
                     coverage_text(coverage, pace).c_str(), options.output.c_str());
     }
-    return exit_success;
+    // Drawn from the input, so that the legend tells its faults; fdhview leaves no triangles out.
+    std::vector<std::string> drawn = options.scene.arguments();
+    if (wanted.simplify)
+        drawn = {options.output, "--no-cache"};
+    return draw_picture(options.picture, std::move(drawn), options.feed_rate_hz);
 }
 
 void add_simplify(CLI::App& app, SimplifyWish& wish)
@@ -127,6 +133,7 @@ Run add_prepare(CLI::App& app)
     options->scene.add_preparation(app);
     add_simplify(app, options->simplify);
     add_feed_rate(app, options->feed_rate_hz, "sets per second that the tip's speed is reckoned with");
+    add_picture(app, options->picture);
     app.add_flag("--json", options->json, "the report as one line of JSON");
     return [options] { return run(*options); };
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -33,6 +34,27 @@ int exec_view(const std::vector<std::string>& arguments)
     if (errno == ENOENT)
         return fail({program, "is not there: the viewer was not built", "make all builds it"});
     return fail({program, fmt::format("cannot be started: {}", std::strerror(errno))});
+}
+
+CLI::Option* add_picture(CLI::App& app, std::optional<std::string>& picture)
+{
+    return app
+        .add_option(
+            "--picture", picture,
+            "draw creases, rims, faults and where triangles are too fine, in colour; needs no display")
+        ->type_name("FILE.png");
+}
+
+int draw_picture(const std::optional<std::string>& picture, std::vector<std::string> scene_words,
+                 double feed_rate_hz)
+{
+    if (!picture)
+        return exit_success;
+    // Nothing of what was printed may be lost with this program.
+    std::fflush(stdout);
+    scene_words.insert(scene_words.end(),
+                       {"--survey", *picture, "--feed-rate", fmt::format("{}", feed_rate_hz)});
+    return exec_view(scene_words);
 }
 
 Run add_view(CLI::App& app)
