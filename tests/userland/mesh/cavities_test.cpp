@@ -90,7 +90,60 @@ TEST(MeshCavities, InTheHoleOfARingIsOutside)
         Soup soup = ring;
         append(soup, cube(3, centre));
         EXPECT_EQ(prepared(soup).report.cavities, centre[0] == centre[1] ? 0U : 1U);
+        for (Vec3& v : soup.vertices) // upright: the ray out of the hole crosses the ring twice
+            v = {v[2], v[0], v[1]};
+        EXPECT_EQ(prepared(soup).report.cavities, centre[0] == centre[1] ? 0U : 1U);
     }
+}
+
+/// Bubbles close to slanted faces on either side, and straight below edges: where a ray is decided by
+/// rounding.
+TEST(MeshCavities, BubblesNextToTheWall)
+{
+    Soup outer = globe(50, 9, 7);
+    for (Vec3& v : outer.vertices) // so that no edge is parallel to anything
+        v = {0.8 * v[0] - 0.6 * v[2], v[1] + 0.1 * v[0], 0.6 * v[0] + 0.8 * v[2]};
+    Soup bubble = cube(1e-4);
+    bubble.faces = {{0, 2, 1}, {0, 1, 4}, {0, 4, 2}, {1, 2, 4}};
+    bubble.vertices = {{-1e-4, 0, 0}, {1e-4, 0, 0}, {0, 1e-4, 0}, {}, {0, 0, 1e-4}};
+    Soup soup = outer;
+    std::uint64_t inside = 0;
+    const std::size_t last = outer.faces.size();
+    // The outer one is convex: a point is inside it when it is behind all of its faces.
+    const auto add_bubble = [&](const Vec3& at) {
+        double out = -1e9;
+        for (std::size_t f = 0; f < last; ++f) {
+            const Vec3 &a = outer.vertices[outer.faces[f][0]], &b = outer.vertices[outer.faces[f][1]],
+                       &c = outer.vertices[outer.faces[f][2]];
+            out = std::max(out, dot(normalized(cross(subtract(b, a), subtract(c, a))), subtract(at, a)));
+        }
+        if (std::abs(out) < 1e-3)
+            return;
+        Soup part = bubble;
+        for (Vec3& v : part.vertices)
+            v = add(v, at);
+        append(soup, part);
+        inside += out < 0;
+    };
+    for (std::size_t f = 0; f < last; ++f) {
+        const Triple& face = outer.faces[f];
+        const Vec3 &a = outer.vertices[face[0]], &b = outer.vertices[face[1]], &c = outer.vertices[face[2]];
+        const Vec3 centre = scaled(add(add(a, b), c), 1.0 / 3);
+        const Vec3 normal = normalized(cross(subtract(b, a), subtract(c, a)));
+        add_bubble(add(centre, scaled(normal, -1e-2)));
+        add_bubble(add(centre, scaled(normal, 1e-2)));
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (face[i] > face[(i + 1) % 3])
+                continue; // each edge once
+            const Vec3 &from = outer.vertices[face[i]], &to = outer.vertices[face[(i + 1) % 3]];
+            for (int k = 1; k < 16; ++k) {
+                const Vec3 on_edge = add(from, scaled(subtract(to, from), k / 16.0));
+                add_bubble(add(on_edge, {0, 0, on_edge[2] > 0 ? -0.1 * k : 0.1 * k}));
+            }
+        }
+    }
+    EXPECT_GT(inside, 1000U);
+    EXPECT_EQ(prepared(soup).report.cavities, inside);
 }
 
 /// Rays that meet vertices and edges exactly: axis-parallel boxes on a common grid.

@@ -84,7 +84,7 @@ double distance_to_face(const Vec3& p, const Place& x)
 /// Farthest of some points of one surface (corners, centres) from the other. Plain search: every n-th only.
 double one_sided_distance(const std::vector<Place>& from, const std::vector<Place>& to)
 {
-    const std::size_t step = std::max<std::size_t>(1, from.size() * to.size() / 400'000);
+    const std::size_t step = std::max<std::size_t>(1, from.size() * to.size() / 60'000);
     double farthest = 0;
     for (std::size_t f = 0; f < from.size(); f += step) {
         const Vec3 centre = scaled(add(add(from[f][0], from[f][1]), from[f][2]), 1.0 / 3);
@@ -289,7 +289,7 @@ TEST(MeshCorpusFiles, MeshesOfCgal)
     ASSERT_EQ(std::system(command.c_str()), 0);
     std::size_t meshes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "data" / "meshes")) {
-        if (!is_mesh_file(entry.path()) || entry.file_size() > 60'000)
+        if (!is_mesh_file(entry.path()) || entry.file_size() > 25'000)
             continue;
         if (!read(entry.path()).ok())
             continue; // point clouds, which have no faces
@@ -306,7 +306,7 @@ TEST(MeshCorpusFiles, ModelsOfAssimp)
         GTEST_SKIP() << "package assimp-testmodels is not installed";
     for (const auto& entry : std::filesystem::recursive_directory_iterator(models)) {
         // Some are broken on purpose: those are refused, in one line.
-        if (is_mesh_file(entry.path()) && entry.file_size() <= 60'000 && read(entry.path()).ok())
+        if (is_mesh_file(entry.path()) && entry.file_size() <= 25'000 && read(entry.path()).ok())
             expect_file_sound(entry.path());
     }
 }

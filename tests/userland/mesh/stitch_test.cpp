@@ -142,7 +142,7 @@ TEST(MeshStitch, ABoxOfUnevenSidesBecomesWatertightAndOutward)
 
 TEST(MeshStitch, NormalsOfTheFileAreInterpolated)
 {
-    Soup soup = seam(1, 2);
+    Soup soup = seam(1, 3);
     for (const Vec3& v : soup.vertices)
         soup.normals.push_back(normalized({v[0], v[1] - 30, 100}));
     soup.face_normals = soup.faces;
@@ -179,6 +179,30 @@ TEST(MeshStitch, SmallDetailIsNotSewnTogether)
     const Prepared out = prepared(soup);
     EXPECT_EQ(out.report.vertices_sewn, 0U);
     EXPECT_EQ(out.report.faces, 208U);
+    // nor with a large one right beside it, whichever comes first
+    for (Vec3& v : tiny.vertices)
+        v[0] -= 200 - 100 - 2e-5;
+    for (const auto& [first, second] : {std::pair{sheet(10, 10), tiny}, std::pair{tiny, sheet(10, 10)}}) {
+        Soup both = first;
+        append(both, second);
+        EXPECT_EQ(prepared(both).report.vertices_sewn, 0U);
+    }
+}
+
+/// Each is near the next, the last is far from the first.
+TEST(MeshStitch, AChainOfVerticesIsNotDrawnTogether)
+{
+    Soup soup;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 at = {0.6e-4 * i, 0, 0};
+        for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{40.0 * i - 50, 40, 0}, Vec3{40.0 * i - 20, 40, 10}})
+            soup.vertices.push_back(add(at, v));
+        const auto base = static_cast<std::uint32_t>(3 * i);
+        soup.faces.push_back({base, base + 1, base + 2});
+    }
+    const Prepared out = prepared(soup);
+    EXPECT_EQ(out.report.vertices_sewn, 1U);
+    EXPECT_NEAR(out.report.moved_max_mm, 0.6e-4, 1e-12);
 }
 
 } // namespace
