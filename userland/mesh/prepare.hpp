@@ -79,9 +79,14 @@ struct Prepared {
     Report report;
 };
 
-/// `name` stands in errors. Fails when no usable face is left, or when an option is out of range or would
-/// give more than 20 million faces. Preparing what it gave once more, with the same options, changes nothing;
-/// but for a fit together with a weld distance, which may move the outline by that distance.
+/// The steps in their order: scale, drop what is not finite or has no area, fit, weld, drop again,
+/// duplicates, orientation, cracks and T-junctions, long edges, neighbours (edges of more than two faces
+/// paired), a vertex for every fan, normals, backs, and checks of the result. `name` stands in errors. Fails
+/// when no usable face is left, or when an option is out of range or would give more than 20 million faces.
+///
+/// Preparing what it gave once more, with the same options but scale and two_sided, changes nothing, bit for
+/// bit; but for a fit together with a weld distance or a gap to be closed, which may move the outline by
+/// that.
 Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::string& name);
 
 /// Writes binary little-endian PLY with doubles and vertex normals (corners with different

@@ -20,7 +20,7 @@ bool is_mesh_file(const std::filesystem::path& file);
 bool is_in_metres(const std::filesystem::path& file);
 
 /// Reads a whole file or nothing; memory is bounded by the file's size, whatever its header says. Polygons
-/// are fanned round their first corner; vertices and faces in errors count from 0, lines from 1. Errors name
+/// are cut into triangles (polygon.hpp); vertices and faces in errors count from 0, lines from 1. Errors name
 /// the file, the place (line, byte, vertex or face) and what was expected: missing file, directory, empty
 /// file, unknown extension, truncated, not a number, beyond 1e9 file units, index out of range, no faces.
 Result<Soup> read(const std::filesystem::path& file);
