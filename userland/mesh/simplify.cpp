@@ -42,8 +42,8 @@ using OpenMesh::VertexHandle;
 /// Normals at an edge's end that differ more are a feature.
 constexpr double same_normal_cosine = 0.9998; // 1.1 degrees
 
-/// Of the distance measured after a run.
-constexpr std::size_t samples = 400'000;
+/// Of the distance measured after a run: for every face that there was, but not more than
+constexpr std::size_t samples_per_face = 8, samples_max = 400'000;
 
 /// The decimater's bounds hold at vertices, centres and middles; where it is more between them it runs again,
 /// more strictly.
@@ -374,6 +374,7 @@ double distance_mm(const Mesh& before, const fdh::TriangleTree<14>& tree, const 
     after.vertices = before.vertices;
     after.faces = faces;
     const auto after_tree = fdh::TriangleTree<14>::build({after.vertices, after.faces});
+    const std::size_t samples = std::min(samples_max, samples_per_face * before.faces.size());
     return std::max(one_sided_hausdorff_mm(before, after, after_tree, samples),
                     one_sided_hausdorff_mm(after, before, tree, samples));
 }

@@ -25,8 +25,8 @@ constexpr double error_factor = 2.0;
 /// Of the mesh's longest side: no level is made with more quadric error than that.
 constexpr double error_max = 0.05;
 
-/// Samples of a surface's distance from another.
-constexpr std::size_t samples = 400'000;
+/// Samples of a surface's distance from another: for every face of the mesh, but not more than
+constexpr std::size_t samples_per_face = 8, samples_max = 400'000;
 
 double longest_edge_mm(const Mesh& mesh)
 {
@@ -74,6 +74,7 @@ class Chain {
         auto tree = fdh::TriangleTree<14>::build({mesh.vertices, mesh.faces}, {.threads = options_.threads});
         if (cancelled())
             return std::nullopt;
+        const std::size_t samples = std::min(samples_max, samples_per_face * mesh_.faces.size());
         // Never less than that of a finer level: the order of the levels is that of their errors.
         error_mm_ =
             std::max({error_mm_, one_sided_hausdorff_mm(mesh, mesh_, tree_, samples, options_.threads),
