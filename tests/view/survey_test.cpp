@@ -98,6 +98,22 @@ TEST_F(Survey, FineTrianglesAreOrange)
     EXPECT_GT(sphere("0.004").thin, 1000U);
 }
 
+TEST_F(Survey, FdhctlDrawsItAfterItsReport)
+{
+    const std::string fdhctl = std::filesystem::path(PHANTOM_FDHVIEW).replace_filename("fdhctl");
+    const auto sheet = folder_.write("sheet.obj", "v 0 0 0\nv 80 0 0\nv 80 60 0\nv 0 60 0\nf 1 2 3 4\n");
+    const std::vector<std::vector<std::string>> commands{
+        {fdhctl, "info", sheet, "--no-cache"}, {fdhctl, "prepare", sheet, "-o", folder_ / "out.ply"}};
+    for (std::vector<std::string> command : commands) {
+        const auto picture = folder_ / (command[1] + ".png");
+        command.insert(command.end(), {"--split", "30", "--picture", picture});
+        const Ended ended = run(command, {{"DISPLAY", ""}});
+        EXPECT_EQ(ended.status, 0) << ended.error;
+        EXPECT_NE(ended.out.find("rims"), std::string::npos) << "the report was lost: " << ended.out;
+        EXPECT_GT(counts_in_views(read_picture(picture)).rim, 500U);
+    }
+}
+
 TEST_F(Survey, WhatCannotBeIsTold)
 {
     const auto scene = folder_.write("box.toml", "[[object]]\nshape = \"box\"\nsize_mm = [8, 6, 4]\n");

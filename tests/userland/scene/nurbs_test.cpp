@@ -64,7 +64,10 @@ TEST(SceneNurbs, SphereIsClosedWithPolesAndASeamAndRadialNormals)
     const mesh::Soup soup = soup_of(patch, 0.1);
     expect_sound(soup);
     expect_exact_corners(soup, sphere_formula(30), 30);
-    EXPECT_GT(expect_within_chord(soup, sphere_formula(30), 0.1), 0.01);
+    const double worst = expect_within_chord(soup, sphere_formula(30), 0.1);
+    EXPECT_GT(worst, 0.01);
+    RecordProperty("worst_um", static_cast<int>(1000 * worst));
+    RecordProperty("triangles", static_cast<int>(soup.faces.size()));
     EXPECT_EQ(soup.vertices.size(), soup.normals.size()) << "a seam, a pole or a knot got two normals";
 }
 
@@ -81,6 +84,22 @@ TEST(SceneNurbs, InsideOutIsTurnedWithItsNormals)
     const mesh::Soup soup = soup_of(patch, 0.5);
     expect_sound(soup);
     expect_exact_corners(soup, sphere_formula(30), 30);
+}
+
+TEST(SceneNurbs, PolesMayLieAtTheEndsOfEitherDirection)
+{
+    const NurbsPatch patch = sphere_patch(30);
+    NurbsPatch other{patch.v, patch.u, {}, {}};
+    for (std::size_t j = 0; j < patch.v.count; ++j) {
+        for (std::size_t i = 0; i < patch.u.count; ++i) {
+            other.points.push_back(patch.points[i * patch.v.count + j]);
+            other.weights.push_back(patch.weights[i * patch.v.count + j]);
+        }
+    }
+    const mesh::Soup soup = soup_of(other, 0.2);
+    expect_sound(soup);
+    expect_exact_corners(soup, sphere_formula(30), 30);
+    EXPECT_EQ(soup.vertices.size(), soup.normals.size());
 }
 
 TEST(SceneNurbs, TorusHasTwoSeams)
@@ -186,7 +205,7 @@ std::array<double, 2> nearest_parameters(const NurbsPatch& patch, const std::vec
     const auto side = static_cast<std::size_t>(samples + 1);
     double u = u0 + (u1 - u0) * static_cast<double>(best / side) / samples;
     double v = v0 + (v1 - v0) * static_cast<double>(best % side) / samples;
-    for (int step = 0; step < 12; ++step) {
+    for (int step = 0; step < 8; ++step) {
         constexpr double h = 1e-6;
         const Vec3 at = point_of(patch, u, v);
         const double hu = u + h > u1 ? -h : h, hv = v + h > v1 ? -h : h;
@@ -204,7 +223,7 @@ std::array<double, 2> nearest_parameters(const NurbsPatch& patch, const std::vec
 TEST(SceneNurbs, FreePatchWithWeightsAndUnevenKnots)
 {
     const NurbsPatch patch = free_patch();
-    constexpr int samples = 40;
+    constexpr int samples = 24;
     std::vector<Vec3> grid;
     for (int i = 0; i <= samples; ++i)
         for (int j = 0; j <= samples; ++j)
@@ -215,9 +234,9 @@ TEST(SceneNurbs, FreePatchWithWeightsAndUnevenKnots)
                           },
                           {},
                           [&](double u, double v) { return point_of(patch, 2 * u, 2 * v - 1); }};
-    const mesh::Soup soup = soup_of(patch, 2);
+    const mesh::Soup soup = soup_of(patch, 4);
     expect_sound(soup, false);
-    EXPECT_GT(expect_within_chord(soup, formula, 2), 0.04) << "the bound of rational patches is a loose one";
+    EXPECT_GT(expect_within_chord(soup, formula, 4), 0.04) << "the bound of rational patches is a loose one";
     // The normals at right angles to differences along the patch.
     std::size_t checked = 0;
     for (std::size_t f = 0; f < soup.faces.size(); f += 3) {

@@ -43,7 +43,7 @@ mesh::Soup soup_of(const Shape& shape, std::optional<double> chord_mm)
 double expect_within_chord(const mesh::Soup& soup, const Formula& formula, double chord_mm)
 {
     const std::vector<Vec3> inside = inside_of_face();
-    const std::size_t stride = 1 + soup.faces.size() / 4000;
+    const std::size_t stride = 1 + soup.faces.size() / 1200;
     const double allowed = chord_mm * (1 + 1e-9) + 1e-12;
     double farthest = 0;
     for (std::size_t f = 0; f < soup.faces.size(); f += stride) {
@@ -59,7 +59,7 @@ double expect_within_chord(const mesh::Soup& soup, const Formula& formula, doubl
     fdh::SceneTree<14> tree;
     tree.add(fdh::TriangleTree<14>::build({soup.vertices, soup.faces}, {.threads = 1}), {});
     tree.update();
-    constexpr int samples = 150;
+    constexpr int samples = 90;
     fdh::Nearest nearest;
     double from_faces = 0;
     for (int i = 0; i <= samples; ++i) {

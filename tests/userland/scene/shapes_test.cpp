@@ -305,6 +305,24 @@ TEST(SceneShapesDefaults, NoCornerOfALidHasHundredsOfTriangles)
     EXPECT_LE(*std::max_element(faces.begin(), faces.end()), 10);
 }
 
+TEST(SceneShapesDefaults, CoarseFacesOfASuperquadricDoNotLieAskewToTheirNormals)
+{
+    for (const double exponent : {0.1, 0.5, 1.5, 1.9}) {
+        const mesh::Soup soup = soup_of(Superquadric{{60, 60, 30}, exponent, exponent}, 20);
+        double least = 1;
+        for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+            const auto& [a, b, c] = soup.faces[f];
+            const Vec3 plane =
+                mesh::normalized(mesh::cross(mesh::subtract(soup.vertices[b], soup.vertices[a]),
+                                             mesh::subtract(soup.vertices[c], soup.vertices[a])));
+            for (const std::uint32_t corner : soup.face_normals[f])
+                least = std::min(least, mesh::dot(soup.normals[corner], plane));
+        }
+        EXPECT_GE(least, 0.3) << exponent;
+        EXPECT_LT(soup.faces.size(), 4000U) << exponent;
+    }
+}
+
 TEST(SceneShapesDefaults, TooManyTrianglesAreRefusedByTheirKey)
 {
     for (const Case& c : cases()) {
