@@ -237,10 +237,13 @@ LANES_NOINLINE real shell_weight(const struct block *block, u32 lane, const stru
 #define PROJECTED_ROUNDS PROJECTED_ROOTS
 #endif
 
-/* Appends the roots of a step to `list`, patch by patch; returns how many. */
+/*
+ * Appends the roots of a step to `list`, patch by patch; returns how many. Adds up the patches whose interval is
+ * split.
+ */
 static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
 				 real rounding, u32 newton_steps, u32 first_patch, bool fan,
-				 struct projected_root *list)
+				 struct projected_root *list, u32 *splits)
 {
 	const real soft = SOFT_WALL * rounding;
 	struct lanes3 q = from_corner(block, step, 0, tip);
@@ -259,6 +262,8 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	c = shell_cubic(block, step, q, height);
 	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
 	split = mask_bits(roots.split);
+	if (split)
+		*splits += mask_count(roots.split);
 #ifndef PHANTOM_REAL_SINGLE
 	if (split)
 		rounds = find_split_roots(block, step, &c, rounding, rounds, &roots);
@@ -299,10 +304,10 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	return count;
 }
 
-/* The roots over a block, patch by patch; returns how many. */
+/* The roots over a block, patch by patch; returns how many. Adds up the patches whose interval is split. */
 static inline u32 projected_block(const struct phantom_float_set *set, u32 block,
 				  const struct nm_point *tip, u32 newton_steps,
-				  struct projected_root *list)
+				  struct projected_root *list, u32 *splits)
 {
 	bool fan = block >= set->block_count;
 	u32 count = 0, step;
@@ -310,7 +315,7 @@ static inline u32 projected_block(const struct phantom_float_set *set, u32 block
 	for (step = 0; step < PHANTOM_STEPS; step++)
 		count += projected_step(&set->blocks[block], step, tip, rounding_mm(set),
 					newton_steps, block * PHANTOM_BLOCK + step * PHANTOM_LANES,
-					fan, &list[count]);
+					fan, &list[count], splits);
 	return count;
 }
 

@@ -31,6 +31,7 @@
 
 #define SHELL_COST_BLOCK 500U /* of sixteen patches out of reach */
 #define SHELL_COST_ROOT 300U /* beside that, for each found */
+#define SHELL_COST_SPLIT 3000U /* and for each patch whose interval is split */
 #define SHELL_COST_SOFT 2000U /* of a root next to a wall: the window, clipped four times */
 #define SHELL_COST_SUM 30U /* of a root or contact */
 #define SHELL_COST_RIMS 250U /* of sixteen rims, for a root or contact of an open surface */
@@ -134,10 +135,11 @@ static inline u32 shell_projected_blocks(const struct phantom_float_job *job,
 	if (steps > PHANTOM_NEWTON_STEPS_MAX)
 		steps = PHANTOM_NEWTON_STEPS_MAX;
 	while (state->cursor < blocks && spent < SHELL_PIECE) {
-		u32 first = state->count;
+		u32 first = state->count, splits = 0;
 
-		state->count += projected_block(set, state->cursor++, &tip, steps, &roots[first]);
-		spent += SHELL_COST_BLOCK;
+		state->count +=
+			projected_block(set, state->cursor++, &tip, steps, &roots[first], &splits);
+		spent += SHELL_COST_BLOCK + SHELL_COST_SPLIT * splits;
 		for (; first < state->count; first++) {
 			spent += SHELL_COST_ROOT;
 			if (roots[first].weight < REAL(1)) {
@@ -225,16 +227,16 @@ static inline u32 shell_paper_blocks(const struct phantom_float_job *job, struct
 	u32 blocks = set->block_count + set->fan_block_count, spent = 0;
 
 	while (state->cursor < blocks && spent < SHELL_PIECE) {
-		u32 block = state->cursor++, found;
+		u32 block = state->cursor++, found, splits = 0;
 
 		if (block < set->block_count) {
 			spent += shell_paper_faces(set, block, &tip, state);
 			continue;
 		}
 		found = projected_block(set, block, &tip, PHANTOM_NEWTON_STEPS_MAX,
-					&scratch_fans(set)[state->fans]);
+					&scratch_fans(set)[state->fans], &splits);
 		state->fans += found;
-		spent += SHELL_COST_BLOCK + SHELL_COST_ROOT * found;
+		spent += SHELL_COST_BLOCK + SHELL_COST_ROOT * found + SHELL_COST_SPLIT * splits;
 	}
 	if (state->cursor == blocks)
 		shell_next(state, state->count	? SHELL_PLANES
