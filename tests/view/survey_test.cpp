@@ -95,7 +95,7 @@ TEST_F(Survey, FineTrianglesAreOrange)
                   "[[object]]\nshape = \"sphere\"\nradius_mm = 40\nchord_mm = " + chord_mm + "\n");
     };
     EXPECT_EQ(sphere("0.5").thin, 0U);
-    EXPECT_GT(sphere("0.004").thin, 1000U);
+    EXPECT_GT(sphere("0.002").thin, 1000U);
 }
 
 TEST_F(Survey, FdhctlDrawsItAfterItsReport)

@@ -42,21 +42,61 @@ Steps steps_of(const NurbsPatch::Direction& d)
     return steps;
 }
 
+struct Parts {
+    double u = 1, v = 1;
+};
+
+/// Parts of a span that are enough over these windows.
+Parts parts_for(const Bend& bend, double chord_mm)
+{
+    // 2 / (nu nv) <= 1 / nu^2 + 1 / nv^2
+    const double along_u = bend.uu + bend.uv, along_v = bend.vv + bend.uv;
+    const double share = along_u > 0 && along_v > 0 ? 0.5 * chord_mm : chord_mm;
+    return {std::max(1.0, std::ceil(std::sqrt(along_u / (8 * share)))),
+            std::max(1.0, std::ceil(std::sqrt(along_v / (8 * share))))};
+}
+
+/// Windows of 2 / count of a span, every one half over the next: a triangle over no more than 1 / count of
+/// the span lies within one of them. The whole span for count 1.
+std::vector<Window> windows(int count)
+{
+    std::vector<Window> all;
+    for (int i = 0; i + 1 < count; ++i)
+        all.push_back({static_cast<double>(i) / count, static_cast<double>(i + 2) / count});
+    return count == 1 ? std::vector<Window>{Window{}} : all;
+}
+
+/// Windows pay where there are many more parts than windows.
+Parts parts_of_span(const NurbsPatch& patch, std::uint32_t u, std::uint32_t v, double chord_mm)
+{
+    Parts best = parts_for(bend_of(patch, u, {}, v, {}), chord_mm);
+    for (const int count : {4, 16}) {
+        const int count_u = best.u >= 2 * count ? count : 1, count_v = best.v >= 2 * count ? count : 1;
+        if (count_u == 1 && count_v == 1)
+            break;
+        Parts parts{static_cast<double>(count_u), static_cast<double>(count_v)};
+        for (const Window& window_u : windows(count_u)) {
+            for (const Window& window_v : windows(count_v)) {
+                const Parts here = parts_for(bend_of(patch, u, window_u, v, window_v), chord_mm);
+                parts = {std::max(parts.u, here.u), std::max(parts.v, here.v)};
+            }
+        }
+        if (parts.u * parts.v < best.u * best.v)
+            best = parts;
+    }
+    return best;
+}
+
 /// Makes the parts of every span enough for the chord error; false when they are beyond counting.
 bool choose_parts(const NurbsPatch& patch, double chord_mm, Steps& u, Steps& v)
 {
-    const auto need = [](double bend, double share) { return std::ceil(std::sqrt(bend / (8 * share))); };
     for (std::size_t i = 0; i < u.spans.size(); ++i) {
         for (std::size_t j = 0; j < v.spans.size(); ++j) {
-            const Bend bend = bend_of(patch, u.spans[i], v.spans[j]);
-            // 2 / (nu nv) <= 1 / nu^2 + 1 / nv^2
-            const double along_u = bend.uu + bend.uv, along_v = bend.vv + bend.uv;
-            const double share = along_u > 0 && along_v > 0 ? 0.5 * chord_mm : chord_mm;
-            const double nu = need(along_u, share), nv = need(along_v, share);
-            if (!(nu < 1e6 && nv < 1e6))
+            const Parts parts = parts_of_span(patch, u.spans[i], v.spans[j], chord_mm);
+            if (!(parts.u < 1e6 && parts.v < 1e6))
                 return false;
-            u.parts[i] = std::max(u.parts[i], static_cast<std::uint32_t>(nu));
-            v.parts[j] = std::max(v.parts[j], static_cast<std::uint32_t>(nv));
+            u.parts[i] = std::max(u.parts[i], static_cast<std::uint32_t>(parts.u));
+            v.parts[j] = std::max(v.parts[j], static_cast<std::uint32_t>(parts.v));
         }
     }
     for (Steps* steps : {&u, &v}) {

@@ -63,32 +63,36 @@ Vec3 spatial(const Homogeneous& h)
     return {h[0], h[1], h[2]};
 }
 
-/// Control points of one span, a column for every u index.
+/// Bezier points of a piece of the patch, a column for every u index.
 using Net = std::vector<std::vector<Homogeneous>>;
 
-/// Of the derivative along u of a net of the given degree whose first point is control point `first`
-/// (equation 3.4).
-Net derived_u(const Net& net, const Direction& d, std::uint32_t degree, std::uint32_t first)
+/// Of the piece between the parameters low and high of a span, by the polar form: point k is the value at
+/// `high` k times and at `low` else (Ramshaw 1989, "Blossoms are polar forms"). `control` are the span's own
+/// points.
+std::vector<Homogeneous> bezier_points(const Direction& d, std::uint32_t span,
+                                       const std::vector<Homogeneous>& control, double low, double high)
 {
-    Net out;
-    for (std::size_t i = 0; i + 1 < net.size(); ++i) {
-        // Each derivative before has taken a knot from either end.
-        const std::size_t at = first + i + (d.degree - degree) + 1;
-        const double factor = degree / (d.knots[at + degree] - d.knots[at]);
-        std::vector<Homogeneous> column;
-        for (std::size_t j = 0; j < net[i].size(); ++j) {
-            Homogeneous value{};
-            value = plus(value, factor, net[i + 1][j]);
-            column.push_back(plus(value, -factor, net[i][j]));
+    const std::uint32_t degree = d.degree;
+    std::vector<Homogeneous> out;
+    for (std::uint32_t k = 0; k <= degree; ++k) {
+        std::vector<Homogeneous> points = control;
+        for (std::uint32_t r = 1; r <= degree; ++r) {
+            const double t = r <= degree - k ? low : high;
+            for (std::uint32_t i = degree; i >= r; --i) {
+                const std::uint32_t knot = span - degree + i;
+                const double left = d.knots[knot], width = d.knots[knot + degree + 1 - r] - left;
+                const double part = (t - left) / width;
+                points[i] = plus(plus({}, 1 - part, points[i - 1]), part, points[i]);
+            }
         }
-        out.push_back(std::move(column));
+        out.push_back(points[degree]);
     }
     return out;
 }
 
 Net transposed(const Net& net)
 {
-    Net out(net.empty() ? 0 : net.front().size());
+    Net out(net.front().size());
     for (const auto& column : net) {
         for (std::size_t j = 0; j < column.size(); ++j)
             out[j].push_back(column[j]);
@@ -96,7 +100,42 @@ Net transposed(const Net& net)
     return out;
 }
 
-/// The largest length in the net, as (position, weight).
+double parameter(const Direction& d, std::uint32_t span, double part)
+{
+    return (1 - part) * d.knots[span] + part * d.knots[span + 1];
+}
+
+Net bezier_net(const NurbsPatch& patch, std::uint32_t span_u, const Window& u, std::uint32_t span_v,
+               const Window& v)
+{
+    Net rows; // of v indices, along u
+    for (std::uint32_t j = 0; j <= patch.v.degree; ++j) {
+        std::vector<Homogeneous> row;
+        for (std::uint32_t i = 0; i <= patch.u.degree; ++i)
+            row.push_back(control(patch, span_u - patch.u.degree + i, span_v - patch.v.degree + j));
+        rows.push_back(bezier_points(patch.u, span_u, row, parameter(patch.u, span_u, u.low),
+                                     parameter(patch.u, span_u, u.high)));
+    }
+    Net net = transposed(rows);
+    for (auto& column : net)
+        column = bezier_points(patch.v, span_v, column, parameter(patch.v, span_v, v.low),
+                               parameter(patch.v, span_v, v.high));
+    return net;
+}
+
+/// Differences of neighbours along u: those of the derivative but for a factor.
+Net differences(const Net& net)
+{
+    Net out;
+    for (std::size_t i = 0; i + 1 < net.size(); ++i) {
+        out.emplace_back();
+        for (std::size_t j = 0; j < net[i].size(); ++j)
+            out.back().push_back(plus(net[i + 1][j], -1, net[i][j]));
+    }
+    return out;
+}
+
+/// The largest lengths of a net's positions and weights.
 struct Size {
     double position = 0, weight = 0;
 };
@@ -113,36 +152,28 @@ Size size_of(const Net& net)
     return size;
 }
 
-/// The control points that the span depends on, from their middle; their greatest distance from it and their
-/// least weight.
+/// A net moved so that the mean of its points is the origin; how far they are from it, and their least
+/// weight.
 struct LocalNet {
     Net net;
     double reach = 0, least_weight = INFINITY;
 };
 
-LocalNet local_net(const NurbsPatch& patch, std::uint32_t first_u, std::uint32_t first_v)
+LocalNet centred(Net net)
 {
-    const auto each = [&](auto&& visit) {
-        for (std::size_t i = first_u; i <= first_u + patch.u.degree; ++i) {
-            for (std::size_t j = first_v; j <= first_v + patch.v.degree; ++j)
-                visit(i, j);
-        }
-    };
+    LocalNet local{std::move(net), 0, INFINITY};
     Vec3 middle{0, 0, 0};
-    const double share = 1.0 / ((patch.u.degree + 1) * (patch.v.degree + 1));
-    each([&](std::size_t i, std::size_t j) {
-        middle = mesh::add(middle, mesh::scaled(patch.points[i * patch.v.count + j], share));
-    });
-    LocalNet local;
-    local.net.resize(patch.u.degree + 1);
-    each([&](std::size_t i, std::size_t j) {
-        const std::size_t at = i * patch.v.count + j;
-        const double w = patch.weights[at];
-        const Vec3 from_middle = mesh::subtract(patch.points[at], middle);
-        local.reach = std::max(local.reach, mesh::length(from_middle));
-        local.least_weight = std::min(local.least_weight, w);
-        local.net[i - first_u].push_back({w * from_middle[0], w * from_middle[1], w * from_middle[2], w});
-    });
+    const double share = 1.0 / static_cast<double>(local.net.size() * local.net.front().size());
+    for (const auto& column : local.net)
+        for (const Homogeneous& h : column)
+            middle = mesh::add(middle, mesh::scaled(spatial(h), share / h[3]));
+    for (auto& column : local.net) {
+        for (Homogeneous& h : column) {
+            h = {h[0] - middle[0] * h[3], h[1] - middle[1] * h[3], h[2] - middle[2] * h[3], h[3]};
+            local.reach = std::max(local.reach, mesh::length(spatial(h)) / h[3]);
+            local.least_weight = std::min(local.least_weight, h[3]);
+        }
+    }
     return local;
 }
 
@@ -175,24 +206,21 @@ SurfacePoint surface_point(const NurbsPatch& patch, std::uint32_t span_u, double
     return point;
 }
 
-Bend bend_of(const NurbsPatch& patch, std::uint32_t span_u, std::uint32_t span_v)
+Bend bend_of(const NurbsPatch& patch, std::uint32_t span_u, const Window& u, std::uint32_t span_v,
+             const Window& v)
 {
-    const std::uint32_t first_u = span_u - patch.u.degree, first_v = span_v - patch.v.degree;
-    const LocalNet local = local_net(patch, first_u, first_v);
-    const auto weighed = [&local](const Size& size, double area) {
-        return (size.position + local.reach * size.weight) / local.least_weight * area;
+    const LocalNet local = centred(bezier_net(patch, span_u, u, span_v, v));
+    // Per span, not per window.
+    const double by_u = patch.u.degree / (u.high - u.low), by_v = patch.v.degree / (v.high - v.low);
+    const double by_uu = by_u * (patch.u.degree - 1) / (u.high - u.low);
+    const double by_vv = by_v * (patch.v.degree - 1) / (v.high - v.low);
+    const auto weighed = [&local](const Net& net, double factor) {
+        const Size size = size_of(net);
+        return (size.position + local.reach * size.weight) / local.least_weight * factor;
     };
-    const Net net_u = derived_u(local.net, patch.u, patch.u.degree, first_u);
-    const Net net_v = derived_u(transposed(local.net), patch.v, patch.v.degree, first_v);
-    const Net net_uv = derived_u(transposed(net_u), patch.v, patch.v.degree, first_v);
-    const double u = patch.u.knots[span_u + 1] - patch.u.knots[span_u];
-    const double v = patch.v.knots[span_v + 1] - patch.v.knots[span_v];
-    Bend bend{0, weighed(size_of(net_uv), u * v), 0};
-    if (patch.u.degree > 1)
-        bend.uu = weighed(size_of(derived_u(net_u, patch.u, patch.u.degree - 1, first_u)), u * u);
-    if (patch.v.degree > 1)
-        bend.vv = weighed(size_of(derived_u(net_v, patch.v, patch.v.degree - 1, first_v)), v * v);
-    return bend;
+    const Net along_u = differences(local.net), along_v = differences(transposed(local.net));
+    return {weighed(differences(along_u), by_uu), weighed(differences(transposed(along_u)), by_u * by_v),
+            weighed(differences(along_v), by_vv)};
 }
 
 Ends ends_of(const NurbsPatch& patch)

@@ -16,12 +16,18 @@ struct SurfacePoint {
 SurfacePoint surface_point(const NurbsPatch& patch, std::uint32_t span_u, double u, std::uint32_t span_v,
                            double v);
 
-/// Bounds over one span, in mm over the whole of it: triangles over 1/nu by 1/nv of the span are within
-/// (uu / nu^2 + 2 uv / (nu nv) + vv / nv^2) / 8 of the patch.
+/// A part of a knot span, 0 and 1 its ends.
+struct Window {
+    double low = 0, high = 1;
+};
+
+/// Bounds, in mm over the whole span: triangles over 1/nu by 1/nv of the span that lie within the windows are
+/// within (uu / nu^2 + 2 uv / (nu nv) + vv / nv^2) / 8 of the patch. The smaller the windows, the tighter.
 struct Bend {
     double uu, uv, vv;
 };
-Bend bend_of(const NurbsPatch& patch, std::uint32_t span_u, std::uint32_t span_v);
+Bend bend_of(const NurbsPatch& patch, std::uint32_t span_u, const Window& u, std::uint32_t span_v,
+             const Window& v);
 
 /// How the patch ends, by its control points: exactly equal ones only.
 struct Ends {
