@@ -259,7 +259,7 @@ LANES_INLINE struct fixed_vector fixed_vector(real x, real y, real z)
 	struct fixed_vector out;
 
 	/* a vector of no length stays so */
-	out.shift = (u32)__builtin_clzll(most | 1) - 1;
+	out.shift = (u32)__builtin_clzll(most | 1) - (most != 0);
 	out.x = (s64)((u64)x << out.shift);
 	out.y = (s64)((u64)y << out.shift);
 	out.z = (s64)((u64)z << out.shift);
@@ -268,6 +268,8 @@ LANES_INLINE struct fixed_vector fixed_vector(real x, real y, real z)
 			    (__uint128_t)((__int128)out.y * out.y) +
 			    (__uint128_t)((__int128)out.z * out.z)) >>
 			   64);
+	if (!most)
+		out.square = 1ULL << 60;
 	out.even = (u32)(out.square >> 62 == 0);
 	out.square <<= 2 * out.even;
 	out.inverse = fixed_inverse_root(out.square) >> 1;
