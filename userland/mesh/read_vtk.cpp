@@ -13,8 +13,6 @@
 #include "mesh/formats.hpp"
 #include "mesh/polygon_stream.hpp"
 
-extern char** environ;
-
 namespace phantom::mesh {
 
 namespace {

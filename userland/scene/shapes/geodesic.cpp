@@ -126,9 +126,9 @@ double geodesic_error(std::uint32_t frequency)
 {
     // All twenty faces are alike. No point of a face is nearer to the centre than the face's plane.
     const mesh::Soup soup = icosahedron();
-    const auto& [a, b, c] = soup.faces.front();
+    const Triple face = soup.faces.front();
     const auto at = [&](const Triple& parts) {
-        return lattice_point(soup.vertices[a], soup.vertices[b], soup.vertices[c], parts);
+        return lattice_point(soup.vertices[face[0]], soup.vertices[face[1]], soup.vertices[face[2]], parts);
     };
     double nearest = 1;
     for_each_small_face(frequency, [&](const Triple& p, const Triple& q, const Triple& r) {

@@ -184,13 +184,16 @@ class Field {
         std::array<std::uint32_t, 2> count{};
         for (std::size_t axis = 0; axis < 2; ++axis)
             count[axis] = static_cast<std::uint32_t>(std::max(1.0, std::round(field_.size_mm[axis] / side)));
-        const std::uint32_t first = builder_.vertex({x_at(0), y_at(0), -field_.base_mm});
-        for (std::uint32_t number = 1; number < (count[0] + 1) * (count[1] + 1); ++number)
-            builder_.vertex({x_at(static_cast<double>(number % (count[0] + 1)) / count[0]),
-                             y_at(static_cast<double>(number / (count[0] + 1)) / count[1]), -field_.base_mm});
+        std::vector<std::uint32_t> numbers; // row by row
+        for (std::uint32_t row = 0; row <= count[1]; ++row) {
+            for (std::uint32_t column = 0; column <= count[0]; ++column)
+                numbers.push_back(
+                    builder_.vertex({x_at(static_cast<double>(column) / count[0]),
+                                     y_at(static_cast<double>(row) / count[1]), -field_.base_mm}));
+        }
         const std::uint32_t down = builder_.normal({0, 0, -1});
         const auto base = [&](std::uint32_t column, std::uint32_t row, std::uint32_t normal) {
-            return Corner{first + row * (count[0] + 1) + column, normal};
+            return Corner{numbers[row * (count[0] + 1) + column], normal};
         };
         for (std::uint32_t row = 0; row < count[1]; ++row) {
             for (std::uint32_t column = 0; column < count[0]; ++column)

@@ -95,7 +95,7 @@ std::filesystem::path read_path(TomlReader& object, std::string_view key, const 
     const auto text = object.text(key);
     if (!text)
         return {};
-    const std::filesystem::path file = scene.parent_path() / *text;
+    std::filesystem::path file = scene.parent_path() / *text;
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
         object.fault(key, "no such file: " + file.string());
