@@ -169,10 +169,13 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     for (Vec3& vertex : soup.vertices)
         vertex = scaled(vertex, options.scale);
     // Before the fit: what will be dropped must not count for the size.
-    if (options.full)
+    if (options.full) {
         drop_degenerate(soup, report);
-    else
+    } else {
         drop_nonfinite(soup, report);
+        if (!std::all_of(soup.vertices.begin(), soup.vertices.end(), is_finite))
+            drop_unused_vertices(soup);
+    }
     if (soup.faces.empty())
         return no_usable_face(report, name);
     if (options.fit_mm > 0) {

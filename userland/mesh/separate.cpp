@@ -59,7 +59,7 @@ std::vector<std::uint32_t> crowded_vertices(const Soup& soup, const std::vector<
 void separate_fans(Soup& soup, const std::vector<Triple>& neighbours, Report& report)
 {
     const std::vector<std::uint32_t> crowded = crowded_vertices(soup, neighbours);
-    report.nonmanifold_vertices = crowded.size();
+    report.nonmanifold_vertices += crowded.size();
     if (crowded.empty())
         return;
     std::vector<bool> is_crowded(soup.vertices.size(), false);

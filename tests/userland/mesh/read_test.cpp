@@ -153,6 +153,7 @@ TEST(MeshRead, PlyVerticesThatAreNoNumberAreDroppedWithTheirFaces)
                 ASSERT_TRUE(out.ok());
                 EXPECT_EQ(out->report.faces_nonfinite, 4U);
                 EXPECT_EQ(out->report.faces, 8U);
+                EXPECT_EQ(out->report.vertices, 7U);
             }
         }
     }
