@@ -4,7 +4,6 @@
 #include "mesh/simplify.hpp"
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -45,6 +44,9 @@ constexpr double same_normal_cosine = 0.9998; // 1.1 degrees
 /// Of the distance measured after a run: for every face that there was, but not more than
 constexpr std::size_t samples_per_face = 8, samples_max = 400'000;
 
+/// Where no error is named, a border or crease may leave its place by that part of an edge's length.
+constexpr double line_part = 0.05;
+
 /// The decimater's bounds hold at vertices, centres and middles; where it is more between them it runs again,
 /// more strictly.
 constexpr int runs_max = 4;
@@ -61,6 +63,7 @@ class ModLineT : public OpenMesh::Decimater::ModBaseT<MeshT> {
     ModLineT(const ModLineT&) = delete;
     ModLineT& operator=(const ModLineT&) = delete;
 
+    /// 0: line_part of what it becomes as long as.
     void set_bound(double bound_mm) { bound_mm_ = bound_mm; }
     void initialize() override
     {
@@ -74,7 +77,9 @@ class ModLineT : public OpenMesh::Decimater::ModBaseT<MeshT> {
         const EdgeHandle other = other_feature(info);
         if (!other.is_valid())
             return Base::ILLEGAL_COLLAPSE;
-        return moved_mm(info, other) <= bound_mm_ ? Base::LEGAL_COLLAPSE : Base::ILLEGAL_COLLAPSE;
+        const double bound_mm =
+            bound_mm_ > 0 ? bound_mm_ : line_part * (mesh_.point(far_end(info, other)) - info.p1).norm();
+        return moved_mm(info, other) <= bound_mm ? Base::LEGAL_COLLAPSE : Base::ILLEGAL_COLLAPSE;
     }
     void preprocess_collapse(const CollapseInfo& info) override
     {
@@ -103,11 +108,15 @@ class ModLineT : public OpenMesh::Decimater::ModBaseT<MeshT> {
         }
         return found;
     }
-    double moved_mm(const CollapseInfo& info, EdgeHandle other) const
+    VertexHandle far_end(const CollapseInfo& info, EdgeHandle other) const
     {
         const auto half = mesh_.halfedge_handle(other, 0);
-        const auto end = mesh_.point(mesh_.to_vertex_handle(half) == info.v0 ? mesh_.from_vertex_handle(half)
-                                                                             : mesh_.to_vertex_handle(half));
+        const VertexHandle to = mesh_.to_vertex_handle(half);
+        return to == info.v0 ? mesh_.from_vertex_handle(half) : to;
+    }
+    double moved_mm(const CollapseInfo& info, EdgeHandle other) const
+    {
+        const auto end = mesh_.point(far_end(info, other));
         const auto along = info.p1 - end, from = info.p0 - end;
         const double squared = along.sqrnorm();
         const double part = squared > 0 ? std::clamp((from | along) / squared, 0.0, 1.0) : 0.0;
@@ -300,7 +309,7 @@ class Simplification {
         decimater.module(quadric).unset_max_err();
         decimater.module(flipping).set_max_normal_deviation(static_cast<float>(options_.normal_deg));
         decimater.module(aspect).set_aspect_ratio(static_cast<float>(options_.aspect));
-        decimater.module(line).set_bound(error_mm > 0 ? error_mm : DBL_MAX);
+        decimater.module(line).set_bound(error_mm);
         if (error_mm > 0) {
             decimater.add(distance);
             decimater.module(distance).set_tolerance(error_mm);

@@ -50,6 +50,18 @@ TEST(Coverage, CountsAreaAndNotFaces)
     EXPECT_GT(of_both.median_mm, 2 * of_fine.median_mm) << "half of the area is coarse";
 }
 
+TEST(Coverage, OfOneInAHundredIsThatOfAFinePart)
+{
+    mesh::Soup small = sheet(80, [](double, double) { return 0.0; });
+    for (mesh::Vec3& vertex : small.vertices)
+        vertex = mesh::add(mesh::scaled(vertex, 0.2), {0, 0, 100}); // 400 mm^2: four in a hundred
+    const scene::Scene scene =
+        scene_of({prepared(sheet(10, [](double, double) { return 0.0; })), prepared(small)});
+    const scene::Coverage coverage = scene::measure_coverage(scene, scene::build_tree<14>(scene), 64);
+    EXPECT_LT(coverage.p1_mm, 2);
+    EXPECT_GT(coverage.median_mm, 20);
+}
+
 TEST(Coverage, OfASceneWithinTheBudgetHasNoEnd)
 {
     const scene::Scene scene = scene_of({prepared(cut_cube(1))});

@@ -89,6 +89,16 @@ inline double distance_to(const mesh::Mesh& mesh, const mesh::Vec3& point)
     return least;
 }
 
+inline double area_mm2(const mesh::Mesh& mesh)
+{
+    double sum = 0;
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        const auto x = corners(mesh, f);
+        sum += 0.5 * mesh::length(mesh::cross(mesh::subtract(x[1], x[0]), mesh::subtract(x[2], x[0])));
+    }
+    return sum;
+}
+
 inline std::size_t open_edges(const mesh::Mesh& mesh)
 {
     std::size_t count = 0;
