@@ -223,8 +223,8 @@ static inline u32 crossing_longest(const struct block *block, u32 lane)
 }
 
 /*
- * The neighbour of a face without a shell, over its longest edge, which all of it lies at, or else whichever has
- * most vertices of it; NONE if none has a shell.
+ * The neighbour of a face without a shell, over its longest edge, which all of it lies at, or else whichever
+ * has most vertices of it; NONE if none has a shell.
  */
 static inline u32 crossing_neighbour(const struct phantom_float_set *set, u32 patch)
 {

@@ -158,8 +158,8 @@ LANES_INLINE struct cubic cubic_tame(const struct block *block, u32 step, const 
 }
 
 /*
- * Has the cubic different signs at the ends of [low, high]? `slopes` is the sum of the Bernstein coefficients of
- * c' on [0, high], whose mean is that of c'; low is so near to 0 that the cubic is straight there.
+ * Has the cubic different signs at the ends of [low, high]? `slopes` is the sum of the Bernstein coefficients
+ * of c' on [0, high], whose mean is that of c'; low is so near to 0 that the cubic is straight there.
  */
 LANES_INLINE mask_lanes cubic_crosses(const struct cubic *c, lanes low, lanes high, lanes slopes)
 {

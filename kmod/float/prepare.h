@@ -351,8 +351,8 @@ static inline void prepare_idle(struct block *block, u32 lane)
 }
 
 /*
- * The plane of a face too low to have one: through its longest edge, towards the mean of its normals. False for
- * a face that is a point, and for normals along that edge.
+ * The plane of a face too low to have one: through its longest edge, towards the mean of its normals. False
+ * for a face that is a point, and for normals along that edge.
  */
 static inline bool slit_plane(const struct patch_geometry *p, struct wide3 *plane)
 {

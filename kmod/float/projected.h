@@ -238,8 +238,8 @@ LANES_NOINLINE real shell_weight(const struct block *block, u32 lane, const stru
 #endif
 
 /*
- * Appends the roots of a step to `list`, patch by patch; returns how many. Adds up the patches whose interval is
- * split.
+ * Appends the roots of a step to `list`, patch by patch; returns how many. Adds up the patches whose interval
+ * is split.
  */
 static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
 				 real rounding, u32 newton_steps, u32 first_patch, bool fan,
