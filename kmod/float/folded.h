@@ -4,10 +4,10 @@
  *
  * At a fold c' goes to 0, and an error of c moves the root by 1 / |c'| times as much; where the shells of a
  * ring shrink to a point (the axis of a dent, the centre of a hollow ball) all their walls are next to the
- * tip as well. There float32's c, off by some 1e-7 of the distances, puts roots farther from where they are than
- * the window is wide, neighbours disagree, and a tip is lost between them. So these patches, those whose
- * interval is split, are worked on in float64 from what neighbours have in common to the last bit: corners in
- * whole nm and normals. What is off then is off by 1e-16 in place of 1e-7.
+ * tip as well. There float32's c, off by some 1e-7 of the distances, puts roots farther from where they are
+ * than the window is wide, neighbours disagree, and a tip is lost between them. So these patches, those
+ * whose interval is split, are worked on in float64 from what neighbours have in common to the last bit:
+ * corners in whole nm and normals. What is off then is off by 1e-16 in place of 1e-7.
  *
  * It is projected.h's own mathematics, with A(h) not divided by |A0|, and one root at a time.
  */
