@@ -219,7 +219,7 @@ struct Feeder::Impl {
         ++totals.sets;
         totals.level_sets.resize(std::max(totals.level_sets.size(), details.size()));
         ++totals.level_sets[report.level];
-        totals.level_changes += report.level != last.level;
+        totals.level_changes += totals.sets > 1 && report.level != last.level;
         query_us.add(report.query_us);
         query_times[report.set_id % query_times_max] = {report.set_id, report.query_us};
         if (last_time != Clock::time_point{})
