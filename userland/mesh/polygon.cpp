@@ -126,15 +126,19 @@ bool PolygonCutter::cut(std::span<const Vec3> corners, std::vector<Triple>& out)
 {
     corners_ = corners;
     const auto count = static_cast<std::uint32_t>(corners.size());
-    const bool plain = count == 3 || !project();
-    const bool convex = !plain && is_convex();
+    const bool seen = count > 3 && project();
+    const bool convex = seen && is_convex();
     if (convex && count == 4 && !is_flat())
         return cut_quadrilateral(out);
-    if (!plain && !(convex && is_flat()))
+    if (seen && !(convex && is_flat()))
         return clip_ears(out);
-    for (std::uint32_t i = 1; i + 1 < count; ++i)
+    bool has_area = false;
+    for (std::uint32_t i = 1; i + 1 < count; ++i) {
         out.push_back({0, i, i + 1});
-    return true;
+        has_area = has_area || shape(corners[0], corners[i], corners[i + 1]) > straight;
+    }
+    // parts with an area that add up to none lie one against the other
+    return count == 3 || seen || !has_area;
 }
 
 std::size_t PolygonCutter::cell_of(double at, double low, double high) const

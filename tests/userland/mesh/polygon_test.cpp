@@ -187,6 +187,10 @@ TEST(MeshPolygon, OneThatCrossesItselfIsToldAndEnds)
     std::vector<Triple> triangles;
     EXPECT_FALSE(PolygonCutter().cut(outline, triangles));
     EXPECT_EQ(triangles.size(), 3U);
+    triangles.clear();
+    EXPECT_FALSE(
+        PolygonCutter().cut(std::vector<Vec3>{{0, 0, 0}, {10, 10, 0}, {10, 0, 0}, {0, 10, 0}}, triangles));
+    EXPECT_EQ(triangles.size(), 2U);
     Noise noise(2);
     std::vector<Vec3> tangle;
     for (int i = 0; i < 3000; ++i)
@@ -199,7 +203,8 @@ TEST(MeshPolygon, OneThatCrossesItselfIsToldAndEnds)
 TEST(MeshPolygon, WithoutAnAreaItIsAFanThatPreparationDrops)
 {
     std::vector<Triple> triangles;
-    PolygonCutter().cut(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, triangles);
+    EXPECT_TRUE(
+        PolygonCutter().cut(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, triangles));
     EXPECT_EQ(triangles.size(), 2U);
 }
 
