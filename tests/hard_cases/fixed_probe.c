@@ -20,12 +20,12 @@ int64_t fixed_probe_mul_sub(int64_t a, int64_t b, int64_t c, int64_t d)
 
 int64_t fixed_probe_mul_fitting(int64_t a, int64_t b)
 {
-	return real_mul_fitting(a, b);
+    return real_mul_fitting(a, b);
 }
 
 int64_t fixed_probe_mul_sub_fitting(int64_t a, int64_t b, int64_t c, int64_t d)
 {
-	return real_mul_sub_fitting(a, b, c, d);
+    return real_mul_sub_fitting(a, b, c, d);
 }
 
 int64_t fixed_probe_divide(int64_t a, int64_t b)
@@ -45,16 +45,16 @@ int64_t fixed_probe_length(int64_t x, int64_t y, int64_t z)
 
 int64_t fixed_probe_root_of_ratio(int64_t a, int64_t b)
 {
-	return lanes_root_of_ratio((lanes){a}, (lanes){b})[0];
+    return lanes_root_of_ratio((lanes){a}, (lanes){b})[0];
 }
 
 void fixed_probe_unit(int64_t vector[3])
 {
-	struct real3 unit = real3_unit((struct real3){vector[0], vector[1], vector[2]});
+    struct real3 unit = real3_unit((struct real3){vector[0], vector[1], vector[2]});
 
-	vector[0] = unit.x;
-	vector[1] = unit.y;
-	vector[2] = unit.z;
+    vector[0] = unit.x;
+    vector[1] = unit.y;
+    vector[2] = unit.z;
 }
 
 int64_t fixed_probe_from_nm(int64_t nm)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One reader per file format; read() chooses. Each but the last checks what CGAL would trust, lets CGAL read, and
-// finds the place when CGAL fails.
+// One reader per file format; read() chooses. Each but the last checks what CGAL would trust, lets CGAL read,
+// and finds the place when CGAL fails.
 #pragma once
 
 #include <string>
