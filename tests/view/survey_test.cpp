@@ -109,7 +109,7 @@ TEST_F(Survey, FdhctlDrawsItAfterItsReport)
         command.insert(command.end(), {"--split", "30", "--picture", picture});
         const Ended ended = run(command, {{"DISPLAY", ""}});
         EXPECT_EQ(ended.status, 0) << ended.error;
-        EXPECT_NE(ended.out.find("rims"), std::string::npos) << "the report was lost: " << ended.out;
+        EXPECT_NE(ended.out.find("1 rim,"), std::string::npos) << "the report was lost: " << ended.out;
         EXPECT_GT(counts_in_views(read_picture(picture)).rim, 500U);
     }
 }

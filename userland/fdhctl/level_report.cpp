@@ -20,6 +20,17 @@ std::string shown_mm(double mm)
     return mm < scene::coverage_max_mm ? fmt::format("{:.3g}", mm) : "all";
 }
 
+/// Hands do not come near it: what is faster needs no figure.
+constexpr double any_speed_mm_s = 1e4;
+
+std::string speed_words(double speed_mm_s)
+{
+    if (speed_mm_s <= 0)
+        return "less than a tip at rest needs (larger sets are sent)";
+    return speed_mm_s < any_speed_mm_s ? fmt::format("enough for a tip at {:.0f} mm/s", speed_mm_s)
+                                       : "enough for a tip at any speed";
+}
+
 } // namespace
 
 double FeedPace::speed_mm_s(const scene::Coverage& coverage) const
@@ -48,10 +59,11 @@ json coverage_json(const scene::Coverage& coverage, const FeedPace& pace)
 
 std::string coverage_text(const scene::Coverage& coverage, const FeedPace& pace)
 {
-    return fmt::format("{} triangles hold all within {} / {} / {} mm (least, 1 %, median): enough for a tip "
-                       "at {:.0f} mm/s, with {:g} sets a second",
+    return fmt::format("{} triangles hold all within {} / {} / {} mm (least, 1 %, median): {}, with {:g} "
+                       "sets a second",
                        coverage.budget, shown_mm(coverage.min_mm), shown_mm(coverage.p1_mm),
-                       shown_mm(coverage.median_mm), pace.speed_mm_s(coverage), pace.feed_rate_hz);
+                       shown_mm(coverage.median_mm), speed_words(pace.speed_mm_s(coverage)),
+                       pace.feed_rate_hz);
 }
 
 std::optional<std::string> coverage_warning(const scene::Coverage& coverage, const FeedPace& pace)
@@ -59,10 +71,11 @@ std::optional<std::string> coverage_warning(const scene::Coverage& coverage, con
     const double speed_mm_s = pace.speed_mm_s(coverage);
     if (speed_mm_s >= scene::fastest_hand_mm_s)
         return std::nullopt;
-    return fmt::format("fine triangles: {} of them last for a tip at {:.0f} mm/s with {:g} sets a second, a "
-                       "hand in a hurry does {:.0f} (levels of detail, --levels auto, are for that; or "
-                       "prepare --simplify, or a higher --feed-rate)",
-                       coverage.budget, speed_mm_s, pace.feed_rate_hz, scene::fastest_hand_mm_s);
+    return fmt::format(
+        "fine triangles: {} of them are {}, with {:g} sets a second; a hand in a hurry does "
+        "{:.0f} mm/s (levels of detail, --levels auto, are for that; or prepare --simplify, or a "
+        "higher --feed-rate)",
+        coverage.budget, speed_words(speed_mm_s), pace.feed_rate_hz, scene::fastest_hand_mm_s);
 }
 
 json levels_json(const scene::Scene& scene, const scene::Levels& levels, const FeedPace& pace)

@@ -19,8 +19,8 @@ void warn_size(double extent_mm, Report& report)
         report.warnings.push_back(
             fmt::format("only {:.3g} mm across: another unit? (--unit m, or --fit 100)", extent_mm));
     else if (extent_mm > 1000.0)
-        report.warnings.push_back(
-            fmt::format("{:.3g} m across: another unit? (--unit um, or --fit 100)", extent_mm / 1000.0));
+        report.warnings.push_back(fmt::format(
+            "{:.3g} m across: another unit? (--unit mm, --unit um, or --fit 100)", extent_mm / 1000.0));
 }
 
 void warn_defects(bool two_sided, Report& report)

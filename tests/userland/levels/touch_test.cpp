@@ -58,7 +58,7 @@ TEST_F(Touch, OfAHandThatHurriesAndLingersChangesLevelsAndNothingIsLost)
     EXPECT_LE(result->step_max, 1.0) << "the slew limit, 1 N per ms";
 }
 
-TEST_F(Touch, OnALevelIsWrongByNoMoreThanItsErrorAndWhatItsFacesTurn)
+TEST_F(Touch, InNoHurryIsOnTheFinestLevelAndExact)
 {
     study::PenetrationOptions options;
     options.path = {.speed_mm_s = 20, .seconds = 0.5, .rate_hz = 1000, .lift_s = 0.25, .lifting_s = 0.05};

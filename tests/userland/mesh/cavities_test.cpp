@@ -7,13 +7,6 @@
 namespace phantom::mesh::test {
 namespace {
 
-Prepared prepared(Soup soup, const PrepareOptions& options = {})
-{
-    auto result = prepare(std::move(soup), options, "test");
-    EXPECT_TRUE(result.ok()) << result.error().text();
-    return result.ok() ? *std::move(result) : Prepared{};
-}
-
 /// Volume of faces first ... last - 1 of the result, about a point of theirs.
 double volume_of(const Mesh& mesh, std::size_t first, std::size_t last)
 {

@@ -9,13 +9,6 @@
 namespace phantom::mesh::test {
 namespace {
 
-Prepared prepared(Soup soup, const PrepareOptions& options = {})
-{
-    auto result = prepare(std::move(soup), options, "test");
-    EXPECT_TRUE(result.ok()) << result.error().text();
-    return result.ok() ? *std::move(result) : Prepared{};
-}
-
 /// Of every edge by its vertices at most two faces, and of every vertex one fan: counted the plain way.
 void expect_manifold(const Mesh& mesh)
 {

@@ -17,6 +17,8 @@
 #include <unistd.h>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "mesh/mesh.hpp"
 #include "mesh/prepare.hpp"
 #include "mesh/vector.hpp"
@@ -115,6 +117,14 @@ inline Soup unwelded(const Soup& soup)
         out.faces.push_back({first, first + 1, first + 2});
     }
     return out;
+}
+
+/// Prepared; the test fails if it cannot be.
+inline Prepared prepared(Soup soup, const PrepareOptions& options = {})
+{
+    auto result = prepare(std::move(soup), options, "test");
+    EXPECT_TRUE(result.ok()) << result.error().text();
+    return result.ok() ? *std::move(result) : Prepared{};
 }
 
 /// What a mesh came to, to be prepared once more.

@@ -10,13 +10,6 @@
 namespace phantom::mesh::test {
 namespace {
 
-Prepared prepared(Soup soup, const PrepareOptions& options = {})
-{
-    auto result = prepare(std::move(soup), options, "test");
-    EXPECT_TRUE(result.ok()) << result.error().text();
-    return result.ok() ? *std::move(result) : Prepared{};
-}
-
 const Vec3& corner_normal(const Mesh& mesh, std::size_t face, std::size_t corner)
 {
     return mesh.normals[mesh.face_normals[face][corner]];

@@ -9,13 +9,6 @@
 namespace phantom::mesh::test {
 namespace {
 
-Prepared prepared(Soup soup, const PrepareOptions& options = {})
-{
-    auto result = prepare(std::move(soup), options, "test");
-    EXPECT_TRUE(result.ok()) << result.error().text();
-    return result.ok() ? *std::move(result) : Prepared{};
-}
-
 /// Every input face is in the result or in one dropped count; all normals are unit; neighbours are right.
 void expect_sound(const Prepared& out)
 {

@@ -7,13 +7,6 @@
 namespace phantom::mesh::test {
 namespace {
 
-Prepared prepared(Soup soup, const PrepareOptions& options = {})
-{
-    auto result = prepare(std::move(soup), options, "test");
-    EXPECT_TRUE(result.ok()) << result.error().text();
-    return result.ok() ? *std::move(result) : Prepared{};
-}
-
 /// A vertex in the inside of an edge that does not end there.
 bool has_t_junction(const Mesh& mesh)
 {

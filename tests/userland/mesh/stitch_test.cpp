@@ -7,13 +7,6 @@
 namespace phantom::mesh::test {
 namespace {
 
-Prepared prepared(Soup soup, const PrepareOptions& options = {})
-{
-    auto result = prepare(std::move(soup), options, "test");
-    EXPECT_TRUE(result.ok()) << result.error().text();
-    return result.ok() ? *std::move(result) : Prepared{};
-}
-
 /// Two rectangles side by side in the plane z = 0: the left one's side at x = 0 is cut into `left` edges, the
 /// right one's into `right`; `crooked` moves the left one's inner vertices by that much along x.
 Soup seam(std::uint32_t left, std::uint32_t right, double crooked = 0)

@@ -29,17 +29,17 @@ std::string error_of(const std::string& lines)
     return error;
 }
 
-std::string shape(const std::string& word, const std::string& lines)
-{
-    return error_of("shape = \"" + word + "\"\n" + lines);
-}
-
 const char* const net = "points_mm = [[[0,0,0],[0,9,1]],[[9,0,1],[9,9,0]]]\n";
 
-TEST(SceneShapeKeys, EveryShapeLoads)
+std::string shape(const std::string& word, const std::string& lines)
 {
     folder().write("hills.pgm", "P2 3 3 9\n0 1 2 3 9 5 6 7 8\n");
     folder().write("patch.toml", std::string("degree = [1, 1]\n") + net);
+    return error_of("shape = \"" + word + "\"\n" + lines);
+}
+
+TEST(SceneShapeKeys, EveryShapeLoads)
+{
     EXPECT_EQ(shape("sphere", "radius_mm = 20\nchord_mm = 0.1\n"), "");
     EXPECT_EQ(shape("ellipsoid", "size_mm = [20, 30, 40]\n"), "");
     EXPECT_EQ(shape("torus", "radius_mm = 20\ntube_radius_mm = 5\n"), "");
