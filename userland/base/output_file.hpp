@@ -56,7 +56,8 @@ class OutputFile {
 
     Status append(std::string_view text)
     {
-        if (std::fwrite(text.data(), 1, text.size(), stream_) == text.size())
+        // An empty text may have no address, which fwrite does not allow.
+        if (text.empty() || std::fwrite(text.data(), 1, text.size(), stream_) == text.size())
             return success();
         const int error = errno;
         discard();

@@ -191,7 +191,8 @@ struct Copy {
     using Bytes = std::unique_ptr<std::byte, decltype(&std::free)>;
     static Bytes aligned(std::span<const std::byte> bytes)
     {
-        Bytes copy(static_cast<std::byte*>(std::aligned_alloc(image_alignment, bytes.size())), &std::free);
+        const std::size_t whole = (bytes.size() + image_alignment - 1) / image_alignment * image_alignment;
+        Bytes copy(static_cast<std::byte*>(std::aligned_alloc(image_alignment, whole)), &std::free);
         std::memcpy(copy.get(), bytes.data(), bytes.size());
         return copy;
     }
