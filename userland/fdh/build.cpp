@@ -244,7 +244,8 @@ TreeData<K> build_tree(const MeshView& mesh, unsigned threads)
         std::vector<Leaf> leaves;
     };
     auto storage = std::make_shared<Storage>();
-    auto& [nodes, leaves] = *storage;
+    std::vector<Node<K>>& nodes = storage->nodes;
+    std::vector<Leaf>& leaves = storage->leaves;
     nodes.resize(shape.nodes.size());
     leaves.resize(shape.leaves);
     parallel_for(0, shape.nodes.size(), threads, [&](std::size_t begin, std::size_t end) {

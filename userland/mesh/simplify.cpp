@@ -9,6 +9,11 @@
 #include <utility>
 #include <vector>
 
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 takes what a new property is copied from for uninitialised, at -O1.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
@@ -16,6 +21,9 @@
 #include <OpenMesh/Tools/Decimater/ModHausdorffT.hh>
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 #include "mesh/hausdorff.hpp"
 #include "mesh/vector.hpp"
@@ -98,7 +106,7 @@ class ModLineT : public OpenMesh::Decimater::ModBaseT<MeshT> {
     {
         EdgeHandle found;
         for (const auto half : mesh_.voh_range(info.v0)) {
-            const EdgeHandle edge = mesh_.edge_handle(half);
+            const EdgeHandle edge{mesh_.edge_handle(half).idx()};
             const VertexHandle end = mesh_.to_vertex_handle(half);
             if (!mesh_.status(edge).feature() || end == info.v1)
                 continue;
@@ -157,7 +165,8 @@ class ModNearT : public OpenMesh::Decimater::ModBaseT<MeshT> {
                 return Base::ILLEGAL_COLLAPSE;
             if (mesh_.is_boundary(half))
                 continue;
-            const VertexHandle b = mesh_.to_vertex_handle(mesh_.next_halfedge_handle(half));
+            const VertexHandle b{
+                mesh_.to_vertex_handle(mesh_.next_halfedge_handle(HalfedgeHandle(half.idx()))).idx()};
             if (b != info.v1 && !is_near((pa + mesh_.point(b) + info.p1) / 3.0))
                 return Base::ILLEGAL_COLLAPSE;
         }
@@ -236,7 +245,7 @@ class Simplification {
         for (std::uint32_t f = 0; f < soup_.faces.size(); ++f) {
             const Triple& at = soup_.faces[f];
             const auto handle = [](std::uint32_t v) { return VertexHandle(static_cast<int>(v)); };
-            face_of_[f] = mesh_.add_face(handle(at[0]), handle(at[1]), handle(at[2]));
+            face_of_[f] = FaceHandle(mesh_.add_face(handle(at[0]), handle(at[1]), handle(at[2])).idx());
             if (!face_of_[f].is_valid())
                 aside_.push_back(f);
         }
@@ -269,7 +278,7 @@ class Simplification {
         const double cosine = std::cos(options_.crease_deg * std::numbers::pi / 180.0);
         std::vector<std::uint32_t> ends(soup_.vertices.size(), 0); ///< features that end in the vertex
         for (const auto edge : mesh_.edges()) {
-            const HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
+            const HalfedgeHandle half{mesh_.halfedge_handle(edge, 0).idx()};
             bool feature = mesh_.is_boundary(edge);
             if (!feature) {
                 const auto other = mesh_.opposite_halfedge_handle(half);

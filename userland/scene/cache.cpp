@@ -183,7 +183,7 @@ Status write(const fs::path& directory, const CacheKey& key, const SectionWriter
     if (code)
         return Error{directory.string(), "cannot be made: " + code.message()};
     fs::permissions(directory, fs::perms::owner_all, code);
-    if (const Status status = out.write(file_of(directory, key), key); !status)
+    if (Status status = out.write(file_of(directory, key), key); !status)
         return status;
     trim_cache(directory, cache_bytes_max);
     return success();
@@ -342,6 +342,7 @@ Status keep_chain(const fs::path& directory, const CacheKey& key, const std::str
     out.add(version, characters(preparation_id));
     out.add(source, characters(source_text));
     std::vector<Numbers> all;
+    all.reserve(chain.size());
     for (const Surface& surface : chain)
         all.push_back(numbers_of(surface));
     for (std::size_t level = 0; level < chain.size(); ++level)

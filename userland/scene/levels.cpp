@@ -39,7 +39,7 @@ std::vector<Surface> chain_of(const Scene& scene, const Object& object, const fd
         return surface.mesh.faces.size() <= options.budget ||
                coverage_alone(scene, at, options.budget).p1_mm >= needed_mm;
     };
-    Surface finest = object;
+    Surface finest = static_cast<const Surface&>(object);
     finest.tree = tree;
     if (enough(finest))
         return out;

@@ -113,7 +113,7 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
     }
     if (!opened)
         scene.notes.push_back(opened.error().text() + ": prepared again");
-    if (const Status status = fill(entry, request.prepare, request.reach_mm, object); !status)
+    if (Status status = fill(entry, request.prepare, request.reach_mm, object); !status)
         return status;
     const auto begin = std::chrono::steady_clock::now();
     object.build_hulls();

@@ -70,6 +70,7 @@ std::vector<std::uint64_t> checksums(const std::vector<std::span<const std::byte
     const std::size_t threads = std::min<std::size_t>(fdh::thread_count(0), pieces.size());
     fdh::on_threads(static_cast<unsigned>(threads), work);
     std::vector<std::uint64_t> result;
+    result.reserve(sums.size());
     for (const std::vector<std::uint64_t>& sum : sums)
         result.push_back(XXH3_64bits(sum.data(), sum.size() * sizeof(sum[0])));
     return result;

@@ -38,7 +38,6 @@ Stage::Stage(const scene::Scene& scene, int width, int height, bool offscreen)
     : scene_(scene),
       oversampling_(offscreen ? picture_oversampling : 1),
       surfaces_(scene),
-      selected_(),
       whole_probe_(whole_, 1),
       spot_probe_(spot_, 0.28),
       chart_(graph_, ForceChart::Lines::norm),
