@@ -71,6 +71,9 @@ Result<std::string> identity_of(const fs::path& file)
     struct stat s {};
     if (::stat(file.c_str(), &s) != 0)
         return Error{file.string(), "cannot be opened: " + std::string(std::strerror(errno))};
+    // Whoever opens a pipe waits for its writer; read() refuses it.
+    if (!S_ISREG(s.st_mode))
+        return Error{file.string(), "is no regular file"};
     return fmt::format("{}:{}:{}:{}.{}:{}.{}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec,
                        s.st_mtim.tv_nsec, s.st_ctim.tv_sec, s.st_ctim.tv_nsec);
 }

@@ -3,6 +3,7 @@
 #include "scene/cache.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <fstream>
@@ -268,6 +269,16 @@ TEST_F(Cache, MeshThatChangedMeanwhileIsNotKept)
     ASSERT_TRUE(kept);
     EXPECT_FALSE(*kept);
     EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Cache, APipeIsRefusedAtOnce)
+{
+    // Whoever opens it waits for a writer, who never comes.
+    const fs::path pipe = folder_.path() / "pipe.off";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const Result<Scene> scene = scene::load(pipe, options_);
+    ASSERT_FALSE(scene);
+    EXPECT_NE(scene.error().text().find("not a regular file"), std::string::npos) << scene.error().text();
 }
 
 TEST_F(Cache, ManyAtOnceGiveTheSame)
