@@ -63,7 +63,8 @@ std::vector<Surface> chain_of(const Scene& scene, const Object& object, const fd
     const bool whole = !options.cancelled || !options.cancelled();
     // The next session builds it again if it cannot be kept: nobody waits for it.
     if (key && whole)
-        (void)keep_chain(*options.cache, *key, object.file.string() + ", levels of detail", out);
+        (void)keep_chain(*options.cache, *key,
+                         std::filesystem::absolute(object.file).string() + ", levels of detail", out);
     return out;
 }
 
