@@ -145,8 +145,8 @@
  *                          reserved not zero, radius 0 in a material, vertices or centre
  *                          beyond +-1 m of the origin, the origin beyond
  *                          PHANTOM_POSITION_MAX_NM
- *                 ENOMEM   no memory (the first sets after open or a change of arithmetic only;
- *                          slots are reused). The set in use stays in use
+ *                 ENOMEM   no memory (the first sets after open, after a change of arithmetic or
+ *                          with longer tables only; slots are reused). The set in use stays
  *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
  *                 EINVAL   beyond PHANTOM_POSITION_MAX_NM, reserved not zero

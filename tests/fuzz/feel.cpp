@@ -46,7 +46,7 @@ phantom_constant constant(bool most)
                 : phantom_constant{{100'000, 0, -500'000}, 0};
 }
 
-phantom_viscosity viscosity(bool most, const std::int64_t (&origin_nm)[3])
+phantom_viscosity viscosity(bool most, const __s64 (&origin_nm)[3])
 {
     phantom_viscosity out{};
     out.viscosity_mns_m = most ? PHANTOM_VISCOSITY_MAX_MNS_M : 2000;
@@ -59,7 +59,7 @@ phantom_viscosity viscosity(bool most, const std::int64_t (&origin_nm)[3])
     return out;
 }
 
-phantom_guide guide(bool most, const std::int64_t (&origin_nm)[3])
+phantom_guide guide(bool most, const __s64 (&origin_nm)[3])
 {
     phantom_guide out{};
     std::copy_n(origin_nm, 3, out.point_nm);
@@ -88,8 +88,7 @@ std::uint32_t space_effects(std::uint8_t feel)
 }
 
 std::vector<std::uint8_t> effect_tables(const std::vector<phantom_material>& materials,
-                                        const std::vector<std::uint8_t>& feels,
-                                        const std::int64_t (&origin_nm)[3])
+                                        const std::vector<std::uint8_t>& feels, const __s64 (&origin_nm)[3])
 {
     Table out;
     std::uint8_t space = 0;

@@ -17,7 +17,6 @@ std::uint32_t space_effects(std::uint8_t feel);
 
 /// The tables of these materials, each with its byte, as they follow the materials.
 std::vector<std::uint8_t> effect_tables(const std::vector<phantom_material>& materials,
-                                        const std::vector<std::uint8_t>& feels,
-                                        const std::int64_t (&origin_nm)[3]);
+                                        const std::vector<std::uint8_t>& feels, const __s64 (&origin_nm)[3]);
 
 } // namespace phantom::fuzz

@@ -99,7 +99,8 @@ struct Plane {
         header.object_count = std::uint32_t(objects.size());
         header.patches = reinterpret_cast<std::uintptr_t>(patches.data());
         const std::size_t words = materials.size() * sizeof(phantom_material) / sizeof(sent[0]);
-        sent.resize(words + tables.size());
+        // room for all that effect_bytes may be spoiled to: the module in user mode believes it
+        sent.assign(words + PHANTOM_EFFECT_BYTES_MAX / sizeof(sent[0]), 0);
         if (words)
             std::memcpy(sent.data(), materials.data(), words * sizeof(sent[0]));
         std::copy(tables.begin(), tables.end(), sent.begin() + std::ptrdiff_t(words));
