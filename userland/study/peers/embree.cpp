@@ -8,10 +8,10 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "study/peers/contenders.hpp"
 #include "study/peers/nearest_keeper.hpp"
-#include "study/peers/triangle_distance.hpp"
 
 namespace phantom::peers {
 
@@ -47,11 +47,10 @@ class Embree final : public Contender {
         query.z = static_cast<float>(p[2]);
         query.time = 0;
         query.radius = static_cast<float>(radius);
-        point_ = {query.x, query.y, query.z};
-        keeper_.start(query.radius);
+        keeper_.start(*mesh_, p, radius);
         RTCPointQueryContext context;
         rtcInitPointQueryContext(&context);
-        rtcPointQuery(scene_, &query, &context, &visit, this);
+        rtcPointQuery(scene_, &query, &context, &visit, &keeper_);
         keeper_.finish();
     }
     void distances(std::vector<double>& out) const override { keeper_.distances(out); }
@@ -59,14 +58,10 @@ class Embree final : public Contender {
   private:
     static bool visit(RTCPointQueryFunctionArguments* arguments)
     {
-        Embree& self = *static_cast<Embree*>(arguments->userPtr);
-        const fdh::Triangle& t = self.mesh_->triangles[arguments->primID];
-        const auto& points = self.mesh_->points;
-        const float distance2 = squared_distance(self.point_, as_vector(points[t[0]]),
-                                                 as_vector(points[t[1]]), as_vector(points[t[2]]));
-        if (!self.keeper_.offer(distance2, arguments->primID))
+        NearestKeeper& keeper = *static_cast<NearestKeeper*>(arguments->userPtr);
+        if (!keeper.offer(arguments->primID))
             return false;
-        arguments->query->radius = std::sqrt(self.keeper_.bound2());
+        arguments->query->radius = std::sqrt(keeper.bound2());
         return true;
     }
 
@@ -115,7 +110,6 @@ class Embree final : public Contender {
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
     std::atomic<std::ptrdiff_t> bytes_ = 0;
-    FloatVector point_{};
     NearestKeeper keeper_;
 };
 

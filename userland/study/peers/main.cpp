@@ -50,8 +50,9 @@ int main(int argc, char** argv)
     std::vector<std::string> meshes{"sphere-20k", "sphere-200k", "sphere-2M",
                                     "sphere-20M", "spot-200k",   "bunny"};
     app.add_option("--meshes", meshes, "sphere-20k, spot-200k, bunny, FILE, ...")->delimiter(',');
-    CLI11_PARSE(app, argc, argv);
     MeasureOptions options;
+    app.add_option("--contenders", options.only, "FDH14, FDH6, Embree, ...; default: all")->delimiter(',');
+    CLI11_PARSE(app, argc, argv);
     options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); };
     for (const std::string& name : meshes) {
         const Result<Mesh> mesh = make_mesh(name);

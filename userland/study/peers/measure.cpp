@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
+#include <span>
 #include <thread>
 
 #include "study/peers/agreement.hpp"
+#include "study/peers/hulls.hpp"
 #include "study/peers/stopwatch.hpp"
 
 namespace phantom::peers {
@@ -18,12 +22,27 @@ namespace {
 /// Point-triangle distances that brute force may spend on one mesh.
 constexpr std::size_t brute_force_budget = 100'000'000;
 constexpr std::size_t most_brute_force = 50;
+/// However slow a contender is, so many of its queries are looked at.
+constexpr std::size_t fewest_queries = 4;
+constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+
+/// Of one contender on one path.
+struct Samples {
+    std::vector<double> ns;
+    double spent_ns = 0; ///< with what is not timed
+    double leaves = 0;   ///< all together
+};
 
 class Run {
   public:
     Run(const Mesh& mesh, const MeasureOptions& options)
         : mesh_(mesh), options_(options), field_(field_for(mesh)), random_(7)
     {
+        if (!options.only.empty())
+            std::erase_if(field_.contenders, [&](const auto& one) {
+                return one->name() != own_name &&
+                       std::ranges::find(options.only, one->name()) == options.only.end();
+            });
         result_.mesh = mesh.name;
         result_.triangles = mesh.triangles.size();
         result_.absent = field_.absent;
@@ -38,6 +57,7 @@ class Run {
         work_ = make_workload(mesh_, options_.rounds, options_.lead_in + options_.block);
         result_.radius_mm = work_.radius;
         build_all();
+        say("checking");
         for (const auto* path : {&work_.walk, &work_.jump})
             if (Status status = check(*path); !status)
                 return status.error();
@@ -110,6 +130,11 @@ class Run {
     {
         std::vector<double> answer;
         field_.contenders[who]->distances(answer);
+        return compare(who, std::move(answer), expected, p);
+    }
+    Status compare(std::size_t who, std::vector<double> answer, const std::vector<double>& expected,
+                   const fdh::Point& p) const
+    {
         const auto wrong = disagreement(std::move(answer), expected, work_.radius, tolerance());
         if (!wrong)
             return success();
@@ -121,23 +146,27 @@ class Run {
     /// Our first contender against every triangle one by one, all others against it.
     Status check(const std::vector<fdh::Point>& path)
     {
-        say("checking");
+        const std::size_t points = std::min(options_.checked, path.size());
         const std::size_t by_hand =
             std::clamp(brute_force_budget / mesh_.triangles.size(), std::size_t{1}, most_brute_force);
-        const std::size_t points = std::min(options_.checked, path.size());
+        std::vector<double> spent_ns(field_.contenders.size(), 0), expected;
         for (std::size_t i = 0; i < points; ++i) {
             const fdh::Point& p = path[i];
-            std::vector<double> expected;
             for (std::size_t who = 0; who < field_.contenders.size(); ++who) {
+                if (i >= fewest_queries && spent_ns[who] > 1e9 * options_.check_seconds)
+                    continue;
+                const std::uint64_t begin = Stopwatch::now();
                 field_.contenders[who]->query(p, work_.radius);
+                spent_ns[who] += watch_.ns(begin, Stopwatch::now());
                 if (who == 0) {
                     field_.contenders[who]->distances(expected);
-                    if (i % (1 + points / by_hand) == 0)
-                        if (Status status = compare(who, brute_force(mesh_, p, work_.radius), p); !status)
-                            return status;
-                } else if (Status status = compare(who, expected, p); !status) {
-                    return status;
+                    if (i % (1 + points / by_hand) != 0)
+                        continue;
                 }
+                if (Status status =
+                        compare(who, who == 0 ? brute_force(mesh_, p, work_.radius) : expected, p);
+                    !status)
+                    return status;
             }
         }
         return success();
@@ -146,47 +175,64 @@ class Run {
     Status time_path(const std::vector<fdh::Point>& path, const char* name, PathTimes Figures::*times)
     {
         say(name);
-        std::vector<std::vector<double>> all_ns(field_.contenders.size());
-        std::vector<double> leaves(field_.contenders.size(), 0), expected;
+        std::vector<Samples> samples(field_.contenders.size());
+        std::vector<double> expected;
         for (std::size_t round = 0; round < options_.rounds; ++round) {
-            const fdh::Point* stroke = path.data() + round * (options_.lead_in + options_.block);
-            const fdh::Point& last = stroke[options_.lead_in + options_.block - 1];
-            field_.contenders[0]->query(last, work_.radius);
-            field_.contenders[0]->distances(expected);
+            const std::span<const fdh::Point> stroke(
+                path.data() + round * (options_.lead_in + options_.block), options_.lead_in + options_.block);
             for (const std::size_t who : shuffled()) {
-                const study::Distribution block = time_block(who, stroke, all_ns[who], leaves[who]);
                 PathTimes& to = result_.figures[who].*times;
+                study::Distribution block{.median = absent, .p99 = absent};
+                if (round == 0 || samples[who].spent_ns < 1e9 * options_.path_seconds) {
+                    const fdh::Point& last = time_block(who, stroke, samples[who], block);
+                    std::vector<double> answer;
+                    field_.contenders[who]->distances(answer);
+                    field_.contenders[0]->query(last, work_.radius);
+                    field_.contenders[0]->distances(expected);
+                    if (Status status = compare(who, std::move(answer), expected, last); !status)
+                        return status;
+                }
                 to.median_ns.push_back(block.median);
                 to.p99_ns.push_back(block.p99);
-                if (Status status = compare(who, expected, last); !status)
-                    return status;
             }
         }
         for (std::size_t who = 0; who < field_.contenders.size(); ++who) {
             PathTimes& to = result_.figures[who].*times;
             if (field_.contenders[who]->leaves())
-                to.leaves = leaves[who] / static_cast<double>(all_ns[who].size());
-            to.all_ns = study::Distribution::of(std::move(all_ns[who]));
+                to.leaves = samples[who].leaves / static_cast<double>(samples[who].ns.size());
+            to.all_ns = study::Distribution::of(std::move(samples[who].ns));
         }
         return success();
     }
 
-    study::Distribution time_block(std::size_t who, const fdh::Point* stroke, std::vector<double>& all_ns,
-                                   double& leaves)
+    /// Returns the point of the last query.
+    const fdh::Point& time_block(std::size_t who, std::span<const fdh::Point> stroke, Samples& samples,
+                                 study::Distribution& block)
     {
         Contender& contender = *field_.contenders[who];
-        for (std::size_t i = 0; i < options_.lead_in; ++i)
-            contender.query(stroke[i], work_.radius);
+        for (const fdh::Point& p : stroke.first(options_.lead_in)) {
+            if (samples.spent_ns > 1e9 * options_.path_seconds)
+                break;
+            const std::uint64_t begin = Stopwatch::now();
+            contender.query(p, work_.radius);
+            samples.spent_ns += watch_.ns(begin, Stopwatch::now());
+        }
         std::vector<double> ns;
         ns.reserve(options_.block);
-        for (std::size_t i = options_.lead_in; i < options_.lead_in + options_.block; ++i) {
+        const fdh::Point* last = nullptr;
+        for (const fdh::Point& p : stroke.subspan(options_.lead_in)) {
+            if (ns.size() >= fewest_queries && samples.spent_ns > 1e9 * options_.path_seconds)
+                break;
             const std::uint64_t begin = Stopwatch::now();
-            contender.query(stroke[i], work_.radius);
+            contender.query(p, work_.radius);
             ns.push_back(watch_.ns(begin, Stopwatch::now()));
-            leaves += contender.leaves().value_or(0);
+            samples.spent_ns += ns.back();
+            samples.leaves += contender.leaves().value_or(0);
+            last = &p;
         }
-        all_ns.insert(all_ns.end(), ns.begin(), ns.end());
-        return study::Distribution::of(std::move(ns));
+        samples.ns.insert(samples.ns.end(), ns.begin(), ns.end());
+        block = study::Distribution::of(std::move(ns));
+        return *last;
     }
 
     void refit_all()
@@ -238,7 +284,7 @@ std::optional<double> ratio(const std::vector<double>& a, const std::vector<doub
 {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        if (b[i] > 0)
+        if (std::isfinite(a[i]) && b[i] > 0)
             ratios.push_back(a[i] / b[i]);
     return median(std::move(ratios));
 }

@@ -21,8 +21,12 @@ struct MeasureOptions {
     std::size_t block = 200;     ///< queries of one contender in a row
     std::size_t lead_in = 16;    ///< queries before them that are not timed: they fetch the upper tree again
     std::size_t checked = 400;   ///< queries per path whose answers are compared before anything is timed
+    double path_seconds = 5;     ///< a contender that is too slow for all rounds takes part in fewer
+    double check_seconds = 1;    ///< and is checked in fewer queries
     double build_seconds = 12;   ///< about so long everyone's building is repeated, once at least
     std::size_t most_builds = 7; ///< and not oftener
+    /// Names of the contenders to measure; empty: all.
+    std::vector<std::string> only{};
     std::function<void(const std::string&)> progress{};
 };
 
@@ -53,7 +57,7 @@ struct MeshFigures {
     [[nodiscard]] const Figures* of(const std::string& name) const;
 };
 
-/// Median over the rounds of a[i] / b[i]; nothing if either was not measured.
+/// Median over the rounds of a[i] / b[i] in which both took part; nothing if there are none.
 std::optional<double> ratio(const std::vector<double>& a, const std::vector<double>& b);
 /// Nothing if empty.
 std::optional<double> median(std::vector<double> samples);
