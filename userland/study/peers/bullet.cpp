@@ -66,12 +66,12 @@ class Bullet final : public Contender {
     void distances(std::vector<double>& out) const override { keeper_.distances(out); }
 
     [[nodiscard]] bool refits() const override { return true; }
-    void prepare_refit(const Mesh& moved) override
+    void prepare_refit(const Mesh& moved, unsigned /*threads*/) override
     {
         mesh_ = &moved;
         scale_points(moved);
     }
-    void refit(unsigned /*threads*/) override { tree_->refit(arrays_.get(), low_, high_); }
+    void refit() override { tree_->refit(arrays_.get(), low_, high_); }
 
   private:
     class Visitor final : public btNodeOverlapCallback {

@@ -60,12 +60,12 @@ class Fcl final : public Contender {
     void distances(std::vector<double>& out) const override { keeper_.distances(out); }
 
     [[nodiscard]] bool refits() const override { return true; }
-    void prepare_refit(const Mesh& moved) override
+    void prepare_refit(const Mesh& moved, unsigned /*threads*/) override
     {
         mesh_ = &moved;
         copy_points(moved);
     }
-    void refit(unsigned /*threads*/) override
+    void refit() override
     {
         model_->beginReplaceModel();
         model_->replaceSubModel(points_);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -24,6 +25,9 @@ constexpr std::size_t brute_force_budget = 100'000'000;
 constexpr std::size_t most_brute_force = 50;
 /// However slow a contender is, so many of its queries are looked at.
 constexpr std::size_t fewest_queries = 4;
+/// Refits of one contender on a mesh, and how far they move it, in parts of the diagonal.
+constexpr std::size_t refits = 5;
+constexpr double wave_part = 1e-3;
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
 /// Of one contender on one path.
@@ -65,7 +69,8 @@ class Run {
             return status.error();
         if (Status status = time_path(work_.jump, "jump", &Figures::jump); !status)
             return status.error();
-        refit_all();
+        if (Status status = refit_all(); !status)
+            return status.error();
         return std::move(result_);
     }
 
@@ -84,19 +89,23 @@ class Run {
         return order;
     }
 
-    /// Million triangles a second.
-    [[nodiscard]] double rate(std::uint64_t begin, std::uint64_t end)
+    /// Million triangles a second that `work` handles: per second of computing on one thread, of the clock on
+    /// several.
+    double rate(unsigned threads, const std::function<void()>& work)
     {
-        return 1e3 * static_cast<double>(mesh_.triangles.size()) / std::max(1.0, watch_.ns(begin, end));
+        const double cpu_begin = cpu_ns();
+        const std::uint64_t begin = Stopwatch::now();
+        work();
+        const double clock = watch_.ns(begin, Stopwatch::now());
+        const double ns = threads == 1 ? cpu_ns() - cpu_begin : clock;
+        return 1e3 * static_cast<double>(mesh_.triangles.size()) / std::max(1.0, ns);
     }
 
     double build(std::size_t who, unsigned threads)
     {
         Contender& contender = *field_.contenders[who];
         contender.prepare(mesh_);
-        const std::uint64_t begin = Stopwatch::now();
-        contender.build(threads);
-        return rate(begin, Stopwatch::now());
+        return rate(threads, [&] { contender.build(threads); });
     }
 
     /// What takes over another's tree is built after all others, once.
@@ -108,12 +117,15 @@ class Run {
             for (const std::size_t who : shuffled()) {
                 const Contender& contender = *field_.contenders[who];
                 Figures& figures = result_.figures[who];
-                if (!contender.builds() || (round > 0 && spent[who] > options_.build_seconds))
+                const bool compared = figures.name == own_name || figures.name == yardstick;
+                const bool enough =
+                    round >= (compared ? options_.fewest_builds : 1) && spent[who] > options_.build_seconds;
+                if (!contender.builds() || enough)
                     continue;
                 const std::uint64_t begin = Stopwatch::now();
-                figures.build_one_mtri_s.push_back(build(who, 1));
+                figures.build_one.push_back(build(who, 1));
                 if (contender.builds_parallel())
-                    figures.build_all_mtri_s.push_back(build(who, result_.threads));
+                    figures.build_all.push_back(build(who, result_.threads));
                 const double seconds = 1e-9 * watch_.ns(begin, Stopwatch::now());
                 spent[who] += seconds * static_cast<double>(field_.contenders.size());
             }
@@ -235,22 +247,45 @@ class Run {
         return *last;
     }
 
-    void refit_all()
+    Status refit_all()
     {
+        const auto can = [](const auto& one) { return one->refits(); };
+        if (std::ranges::none_of(field_.contenders, can))
+            return success();
         say("refitting");
-        const Mesh moved = waved(mesh_, 1e-3 * mesh_.diagonal);
-        for (std::size_t round = 0; round < options_.most_builds; ++round) {
-            for (const std::size_t who : shuffled()) {
-                Contender& contender = *field_.contenders[who];
-                if (!contender.refits())
+        const Mesh moved = waved(mesh_, wave_part * mesh_.diagonal);
+        for (std::size_t who = 0; who < field_.contenders.size(); ++who) {
+            Contender& contender = *field_.contenders[who];
+            if (!contender.refits())
+                continue;
+            refit(contender, moved, 1, result_.figures[who].refit_one);
+            if (contender.refits_parallel())
+                refit(contender, moved, result_.threads, result_.figures[who].refit_all);
+        }
+        return check_refits(moved);
+    }
+
+    void refit(Contender& contender, const Mesh& moved, unsigned threads, std::vector<double>& rates)
+    {
+        contender.prepare_refit(moved, threads);
+        for (std::size_t i = 0; i < refits; ++i)
+            rates.push_back(rate(threads, [&] { contender.refit(); }));
+    }
+
+    Status check_refits(const Mesh& moved)
+    {
+        for (std::size_t i = 0; i < fewest_queries; ++i) {
+            const fdh::Point& p = moved.vertices[random_() % moved.vertices.size()];
+            const std::vector<double> expected = brute_force(moved, p, work_.radius);
+            for (std::size_t who = 0; who < field_.contenders.size(); ++who) {
+                if (!field_.contenders[who]->refits())
                     continue;
-                if (round == 0)
-                    contender.prepare_refit(moved);
-                const std::uint64_t begin = Stopwatch::now();
-                contender.refit(1);
-                result_.figures[who].refit_mtri_s.push_back(rate(begin, Stopwatch::now()));
+                field_.contenders[who]->query(p, work_.radius);
+                if (Status status = compare(who, expected, p); !status)
+                    return status;
             }
         }
+        return success();
     }
 
     [[nodiscard]] double tolerance() const { return tolerance_mm(work_.accuracy, work_.radius); }

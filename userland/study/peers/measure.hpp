@@ -24,7 +24,8 @@ struct MeasureOptions {
     double path_seconds = 5;     ///< a contender that is too slow for all rounds takes part in fewer
     double check_seconds = 1;    ///< and is checked in fewer queries
     double build_seconds = 12;   ///< about so long everyone's building is repeated, once at least
-    std::size_t most_builds = 7; ///< and not oftener
+    std::size_t most_builds = 7; ///< and not oftener; ours and the yardstick's at least
+    std::size_t fewest_builds = 2;
     /// Names of the contenders to measure; empty: all.
     std::vector<std::string> only{};
     std::function<void(const std::string&)> progress{};
@@ -37,11 +38,12 @@ struct PathTimes {
     std::optional<double> leaves;          ///< mean per query
 };
 
-/// One contender on one mesh. Rates by round, so that ratios can be taken within one; empty: not measured.
+/// One contender on one mesh. Rates [million triangles a second] by round, so that ratios can be taken within
+/// one; empty: not measured.
 struct Figures {
     std::string name{}, method{};
-    std::vector<double> build_one_mtri_s{}, build_all_mtri_s{}; ///< one thread; all
-    std::vector<double> refit_mtri_s{};                         ///< one thread
+    std::vector<double> build_one{}, build_all{}; ///< on one thread, on all
+    std::vector<double> refit_one{}, refit_all{};
     double bytes_per_triangle = 0;
     PathTimes walk{}, jump{};
 };
