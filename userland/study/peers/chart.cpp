@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "study/peers/hulls.hpp"
@@ -41,22 +42,38 @@ std::vector<Curve> curves(std::span<const MeshFigures> meshes, PathTimes Figures
     return all;
 }
 
-/// Decades that hold all values.
-struct Decades {
-    double low = 0, high = 1; ///< log10
+/// What holds all values, on a logarithmic scale with some room.
+class Axis {
+  public:
     void take(double value)
     {
         if (!(value > 0))
             return;
-        const double log = std::log10(value);
-        low = first ? std::floor(log) : std::min(low, std::floor(log));
-        high = first ? std::ceil(log + 1e-9) : std::max(high, std::ceil(log + 1e-9));
-        first = false;
+        low_ = std::min(low_, value);
+        high_ = std::max(high_, value);
     }
-    [[nodiscard]] double part(double value) const { return (std::log10(value) - low) / (high - low); }
+    /// 0 at the lower end, 1 at the upper.
+    [[nodiscard]] double part(double value) const
+    {
+        return std::log(value / (low_ / room)) / std::log(high_ / low_ * room * room);
+    }
+    /// 1, 2 and 5 of every decade in it.
+    [[nodiscard]] std::vector<double> ticks() const
+    {
+        std::vector<double> all;
+        if (high_ < low_)
+            return all;
+        for (double decade = std::pow(10, std::floor(std::log10(low_ / room))); decade < high_ * room;
+             decade *= 10)
+            for (const double digit : {1, 2, 5})
+                if (const double part_of = part(digit * decade); part_of >= 0 && part_of <= 1)
+                    all.push_back(digit * decade);
+        return all;
+    }
 
   private:
-    bool first = true;
+    static constexpr double room = 1.2;
+    double low_ = std::numeric_limits<double>::max(), high_ = 0;
 };
 
 std::string colour(const std::string& name)
@@ -102,17 +119,17 @@ class Panel {
                 "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"grid\"/>\n", x1, y1,
                 x2, y2);
         };
-        for (double log = across_.low; log <= across_.high; ++log) {
-            const double x = x_of(std::pow(10, log));
+        for (const double triangles : across_.ticks()) {
+            const double x = x_of(triangles);
             line(x, top, x, top + panel_height);
             text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"middle\">{}</text>\n", x,
-                                top + panel_height + 18, words(std::pow(10, log), {"", "k", "M", "G"}));
+                                top + panel_height + 18, words(triangles, {"", "k", "M", "G"}));
         }
-        for (double log = up_.low; log <= up_.high; ++log) {
-            const double y = y_of(std::pow(10, log));
+        for (const double ns : up_.ticks()) {
+            const double y = y_of(ns);
             line(x_, y, x_ + panel_width, y);
             text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"end\">{}</text>\n", x_ - 6, y + 4,
-                                words(std::pow(10, log), {" ns", " µs", " ms", " s"}));
+                                words(ns, {" ns", " µs", " ms", " s"}));
         }
         return text + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"middle\">triangles</text>\n",
                                   x_ + panel_width / 2, top + panel_height + 38);
@@ -160,7 +177,7 @@ class Panel {
     std::string title_;
     std::vector<Curve> curves_;
     double x_;
-    Decades across_, up_;
+    Axis across_, up_;
 };
 
 } // namespace

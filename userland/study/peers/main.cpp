@@ -19,6 +19,7 @@ constexpr int exit_failed = 1, exit_usage = 2;
 
 struct Options {
     std::vector<std::string> meshes;
+    std::vector<std::string> contenders; ///< empty: all
     std::filesystem::path out = ".";
     bool quick = false;
     MeasureOptions measure;
@@ -38,7 +39,7 @@ void add_options(CLI::App& app, Options& options)
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("MESH,...");
-    app.add_option("--contenders", options.measure.only, "FDH14 and these, e.g. FDH6,Embree; default: all")
+    app.add_option("--contenders", options.contenders, "FDH14 and these, e.g. FDH6,Embree; default: all")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("NAME,...");
@@ -76,7 +77,10 @@ Result<std::vector<MeshFigures>> measure_all(Options& options)
         const Result<Mesh> mesh = make_mesh(name);
         if (!mesh)
             return mesh.error();
-        Result<MeshFigures> figures = measure(*mesh, options.measure);
+        Result<Field> field = field_for(*mesh, options.contenders);
+        if (!field)
+            return field.error();
+        Result<MeshFigures> figures = measure(*mesh, std::move(*field), options.measure);
         if (!figures)
             return figures.error();
         all.push_back(std::move(*figures));

@@ -39,14 +39,9 @@ struct Samples {
 
 class Run {
   public:
-    Run(const Mesh& mesh, const MeasureOptions& options)
-        : mesh_(mesh), options_(options), field_(field_for(mesh)), random_(7)
+    Run(const Mesh& mesh, Field field, const MeasureOptions& options)
+        : mesh_(mesh), options_(options), field_(std::move(field)), random_(7)
     {
-        if (!options.only.empty())
-            std::erase_if(field_.contenders, [&](const auto& one) {
-                return one->name() != own_name &&
-                       std::ranges::find(options.only, one->name()) == options.only.end();
-            });
         result_.mesh = mesh.name;
         result_.triangles = mesh.triangles.size();
         result_.absent = field_.absent;
@@ -324,9 +319,9 @@ std::optional<double> ratio(const std::vector<double>& a, const std::vector<doub
     return median(std::move(ratios));
 }
 
-Result<MeshFigures> measure(const Mesh& mesh, const MeasureOptions& options)
+Result<MeshFigures> measure(const Mesh& mesh, Field field, const MeasureOptions& options)
 {
-    return Run(mesh, options).run();
+    return Run(mesh, std::move(field), options).run();
 }
 
 } // namespace phantom::peers

@@ -26,8 +26,6 @@ struct MeasureOptions {
     double build_seconds = 12;   ///< about so long everyone's building is repeated, once at least
     std::size_t most_builds = 7; ///< and not oftener; ours and the yardstick's at least
     std::size_t fewest_builds = 2;
-    /// Names of the contenders to measure; empty: all.
-    std::vector<std::string> only{};
     std::function<void(const std::string&)> progress{};
 };
 
@@ -64,7 +62,8 @@ std::optional<double> ratio(const std::vector<double>& a, const std::vector<doub
 /// Nothing if empty.
 std::optional<double> median(std::vector<double> samples);
 
-/// The error names the contender whose answer is wrong, and the query.
-Result<MeshFigures> measure(const Mesh& mesh, const MeasureOptions& options);
+/// The error names the contender whose answer is wrong, and the query. Whoever is in the field is measured;
+/// the first is the one whose answers are held against brute force, and all others' against.
+Result<MeshFigures> measure(const Mesh& mesh, Field field, const MeasureOptions& options);
 
 } // namespace phantom::peers
