@@ -145,7 +145,7 @@ void NearestCollector::search_precisely(const TreeView<K>& tree, const Point& st
 void NearestCollector::finish()
 {
     out_.coverage = max_radius_;
-    double farthest = max_radius_;
+    double farthest = max_radius_ + error_.at(max_radius_);
     if (size_ == keep_) { // the farthest stands last
         // The error bound has room for the rounding of the difference.
         farthest = out_.hits[--size_].distance;

@@ -53,8 +53,8 @@ template <int K>
 struct SearchKernels {
     /// Every triangle of the tree whose computed distance is within out.limit2 (which may shrink on the way).
     void (*search)(const TreeView<K>& tree, const SearchPoint<K>& point, Candidates& out);
-    /// If there are more than out.keep: moves those to the front, the farthest of them last, forgets the
-    /// others, and makes its squared distance the limit.
+    /// Once there are out.keep: moves those to the front, the farthest of them last, forgets the others, and
+    /// makes its squared distance the limit.
     void (*select)(Candidates& out);
     /// `hits` has room for as many as there are candidates, which are overwritten.
     void (*to_hits)(Candidates& from, std::uint32_t object, double step, Hit* hits);

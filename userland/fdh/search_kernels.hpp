@@ -216,8 +216,15 @@ struct Selection {
 
     static void select(Candidates& c)
     {
-        if (c.size <= c.keep)
+        if (c.size < c.keep)
             return;
+        if (c.size > c.keep)
+            drop(c);
+        c.limit2 = farthest_last(c);
+    }
+
+    static void drop(Candidates& c)
+    {
         for (std::size_t i = 0; i < Candidates::slack; i++) // what fills up the last vector is not counted
             c.distance2[c.size + i] = __builtin_inff();
         const float limit = threshold(c);
@@ -233,7 +240,6 @@ struct Selection {
         c.size = size;
         if (size > c.keep)
             drop_ties(c, limit);
-        c.limit2 = farthest_last(c);
     }
 
     /// Of the candidates' squared distances.
@@ -540,7 +546,7 @@ class Search {
 
     void narrow_to_kept()
     {
-        if (out_.size > out_.keep) {
+        if (out_.size >= out_.keep) {
             Selection<I>::select(out_);
             narrow();
         }
