@@ -23,9 +23,9 @@ struct QueryCounts {
     std::uint64_t triangles = 0; ///< found near enough, of which the nearest were kept
 };
 
-/// Result of "the N nearest within a radius", and the radius they cover: every triangle nearer than `coverage`
-/// is among the hits. coverage = max_radius when fewer than N triangles were found, otherwise the distance
-/// of the nearest one left out, rounded down so that it holds.
+/// Result of "the N nearest within a radius", and the radius they cover: every triangle nearer than
+/// `coverage` is among the hits. coverage = max_radius when fewer than N triangles were found, otherwise the
+/// distance of the nearest one left out, rounded down so that it holds.
 struct Nearest {
     std::vector<Hit> hits; ///< in no order; among equally near ones those of the lowest (object, triangle)
     double coverage = 0;

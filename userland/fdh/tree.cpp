@@ -39,8 +39,8 @@ template <int K>
 TriangleTree<K> TriangleTree<K>::build(const MeshView& mesh, const BuildOptions& options)
 {
     check_isa(options.isa);
-    return TriangleTree(
-        std::make_shared<const Impl>(build_tree<K>(mesh, thread_count(options.threads), options.isa), options.isa));
+    return TriangleTree(std::make_shared<const Impl>(
+        build_tree<K>(mesh, thread_count(options.threads), options.isa), options.isa));
 }
 
 template <int K>
@@ -61,8 +61,13 @@ template <int K>
 TreeImage TriangleTree<K>::image() const
 {
     const TreeData<K>& data = impl_->data;
-    return {data.grid.origin, data.grid.step, data.longest_edge, data.spread, data.triangles,
-            std::as_bytes(data.nodes), std::as_bytes(data.leaves)};
+    return {data.grid.origin,
+            data.grid.step,
+            data.longest_edge,
+            data.spread,
+            data.triangles,
+            std::as_bytes(data.nodes),
+            std::as_bytes(data.leaves)};
 }
 
 template <int K>
