@@ -7,6 +7,7 @@
 
 #include "fdh/collector.hpp"
 #include "fdh/object_tree.hpp"
+#include "fdh/region_search.hpp"
 #include "fdh/tree_impl.hpp"
 
 namespace phantom::fdh {
@@ -211,6 +212,39 @@ void SceneTree<K>::within(const Point& p, double radius, std::vector<Hit>& out) 
     WithinCollector collector(out, radius);
     impl_->collect(p, collector);
     collector.finish();
+}
+
+template <int K>
+void SceneTree<K>::along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (!valid_segment({from, to}, radius))
+        return;
+    Slabs<K> hull = slabs_of<K>(from);
+    grow<K>(hull, slabs_of<K>(to));
+    impl_->level.visit(
+        hull, [&] { return radius; },
+        [&](std::uint32_t i) {
+            const typename Impl::Object& object = impl_->objects[i];
+            const Segment local = {to_local(object.pose, from), to_local(object.pose, to)};
+            const auto& data = object.tree.impl_->data;
+            search_along<K>(object.tree.impl_->view, data.grid, local, radius, i, out);
+        });
+}
+
+template <int K>
+void SceneTree<K>::in_box(const Box& box, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (!valid_box(box))
+        return;
+    impl_->level.visit(
+        slabs_of<K>(box), [] { return 0.0; },
+        [&](std::uint32_t i) {
+            const typename Impl::Object& object = impl_->objects[i];
+            const auto& data = object.tree.impl_->data;
+            search_box<K>(object.tree.impl_->view, data.grid, object.pose, box, i, out);
+        });
 }
 
 template <int K>

@@ -48,6 +48,10 @@ class SceneTree {
     void nearest(const Point& p, std::size_t count, double max_radius, Nearest& out) const;
     void within(const Point& p, double radius, std::vector<Hit>& out) const;
 
+    /// As TriangleTree::along and TriangleTree::in_box, over all objects, in world coordinates.
+    void along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const;
+    void in_box(const Box& box, std::vector<Hit>& out) const;
+
     /// Every object whose triangles may be within `distance` of the given object's, ordered by number: the
     /// first level of collision detection in Kabelac 2001, section 5, for the hand's own object. `first` is
     /// the given object. Never misses one. Hulls decide, as seen in world directions and from both objects'
