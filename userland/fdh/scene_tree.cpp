@@ -211,7 +211,6 @@ void SceneTree<K>::within(const Point& p, double radius, std::vector<Hit>& out) 
         return;
     WithinCollector collector(out, radius);
     impl_->collect(p, collector);
-    collector.finish();
 }
 
 template <int K>

@@ -27,11 +27,8 @@ Polygon clipped(const Polygon& polygon, int axis, double sign, double bound)
         const double inside_a = sign * (a[axis] - bound), inside_b = sign * (b[axis] - bound);
         if (inside_a >= 0)
             kept.add(a);
-        if ((inside_a >= 0) != (inside_b >= 0)) {
-            Point between = plus(a, inside_a / (inside_a - inside_b), minus(b, a));
-            between[axis] = bound;
-            kept.add(between);
-        }
+        if ((inside_a >= 0) != (inside_b >= 0))
+            kept.add(plus(a, inside_a / (inside_a - inside_b), minus(b, a)));
     }
     return kept;
 }
