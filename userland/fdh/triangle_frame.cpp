@@ -12,11 +12,33 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Height over longest edge below which rounding leaves no normal. What is left out then is that thin.
 constexpr double thinnest = 0x1p-50;
 
-/// Where on s the foot of p lies: 0 at its start, 1 at its end.
-double foot(const Point& p, const Point& from, const Point& direction)
+double inverse(double squared)
 {
-    const double squared = dot(direction, direction);
-    return squared > 0 ? std::clamp(dot(minus(p, from), direction) / squared, 0.0, 1.0) : 0;
+    return squared > 0 ? 1 / squared : 0;
+}
+
+/// Squared distance from p, relative to a segment's start, to the segment.
+double squared_distance(const Point& p, const Point& direction, double inverse2)
+{
+    const double t = std::clamp(dot(p, direction) * inverse2, 0.0, 1.0);
+    const Point r = plus(p, -t, direction);
+    return dot(r, r);
+}
+
+/// Squared distance between two lines' nearest places where those lie within both segments, d from 0 and e
+/// from w; infinite if they do not: then an end is nearest.
+///
+/// Of nearly parallel lines the places are found as badly as it matters little: with c = d × e, the parameter
+/// is off by rounding / |sin|, and a way along the line alters the distance by |sin| times that. (d·d e·e -
+/// (d·e)² for |c|² would square the loss.) What is returned is a distance between places of the two.
+double between_lines2(const Point& d, const Point& w, const Point& e, double inverse_e2)
+{
+    const Point c = cross(d, e);
+    const double cc = dot(c, c), s = dot(cross(w, e), c);
+    if (!(s >= 0 && s <= cc && cc > 0))
+        return infinity;
+    const Point p = plus(w, -s / cc, d); // from the place on d to the start of e
+    return squared_distance({-p[0], -p[1], -p[2]}, e, inverse_e2);
 }
 
 /// Of the interval between a and b from [0, high].
@@ -26,31 +48,6 @@ double gap(double a, double b, double high)
 }
 
 } // namespace
-
-double squared_distance(const Point& p, const Segment& s)
-{
-    const Point d = minus(s.to, s.from), w = minus(p, s.from);
-    const Point r = plus(w, -foot(p, s.from, d), d);
-    return dot(r, r);
-}
-
-/// The nearest places are an end of one of them, or where the common perpendicular meets both lines. Of
-/// nearly parallel lines that is found as badly as it matters little: with c = d × e, an error of the
-/// parameter is rounding / |sin|, and moves along the line by it change the distance by |sin| times that.
-/// (d·d e·e - (d·e)² for |c|² would square the loss.) All candidates are distances between places of the two.
-double squared_distance(const Segment& a, const Segment& b)
-{
-    double best = std::min({squared_distance(a.from, b), squared_distance(a.to, b),
-                            squared_distance(b.from, a), squared_distance(b.to, a)});
-    const Point d = minus(a.to, a.from), e = minus(b.to, b.from), c = cross(d, e);
-    const double cc = dot(c, c);
-    if (cc > 0) {
-        const double s = std::clamp(dot(cross(minus(b.from, a.from), e), c) / cc, 0.0, 1.0);
-        const Point q = plus(b.from, foot(plus(a.from, s, d), b.from, e), e);
-        best = std::min(best, squared_distance(q, a));
-    }
-    return best;
-}
 
 TriangleFrame::TriangleFrame(const Corners& corners) : corners_(corners)
 {
@@ -64,11 +61,15 @@ TriangleFrame::TriangleFrame(const Corners& corners) : corners_(corners)
         }
     }
     std::rotate(corners_.begin(), corners_.begin() + first, corners_.end());
+    for (int i = 0; i < 3; i++) {
+        edges_[i] = minus(corners_[(i + 1) % 3], corners_[i]);
+        inverse2_[i] = inverse(dot(edges_[i], edges_[i]));
+    }
     flat_ = true;
     base_ = std::sqrt(longest);
     if (!(base_ > 0))
         return;
-    const Point e = minus(corners_[1], corners_[0]), v = minus(corners_[2], corners_[0]);
+    const Point &e = edges_[0], v = minus(corners_[2], corners_[0]);
     x_ = {e[0] / base_, e[1] / base_, e[2] / base_};
     Point n = cross(e, v);
     n = plus(n, -dot(n, x_), x_); // rounding may have left a part along the edge
@@ -117,6 +118,29 @@ double TriangleFrame::box_bound(const Point& from, const Point& to) const
     return std::sqrt(x * x + y * y + z * z);
 }
 
+double TriangleFrame::to_border2(const Point& p) const
+{
+    double best = infinity;
+    for (int i = 0; i < 3; i++)
+        best = std::min(best, squared_distance(minus(p, corners_[i]), edges_[i], inverse2_[i]));
+    return best;
+}
+
+double TriangleFrame::to_border2(const Segment& segment) const
+{
+    const Point way = minus(segment.to, segment.from);
+    const double inverse2 = inverse(dot(way, way));
+    if (inverse2 == 0)
+        return to_border2(segment.from);
+    double best = std::min(to_border2(segment.from), to_border2(segment.to));
+    for (int i = 0; i < 3; i++) {
+        const Point w = minus(corners_[i], segment.from);
+        best = std::min(
+            {best, squared_distance(w, way, inverse2), between_lines2(way, w, edges_[i], inverse2_[i])});
+    }
+    return best;
+}
+
 double TriangleFrame::distance(const Segment& segment, double limit) const
 {
     double interior = infinity;
@@ -125,22 +149,17 @@ double TriangleFrame::distance(const Segment& segment, double limit) const
         if (const double bound = box_bound(from, to); bound > limit)
             return bound;
         interior = to_interior(from, to);
-        if (interior == 0)
-            return 0;
+        // All of it over the triangle: no edge is nearer.
+        if (interior == 0 || (over(from[0], from[1]) && over(to[0], to[1])))
+            return interior;
     }
-    double border2 = infinity;
-    for (int i = 0; i < 3; i++)
-        border2 = std::min(border2, squared_distance(segment, edge(i)));
-    return std::min(interior, std::sqrt(border2));
+    return std::min(interior, std::sqrt(to_border2(segment)));
 }
 
 double TriangleFrame::distance(const Point& p) const
 {
     const Point q = flat_ ? Point{} : to_frame(p);
-    if (!flat_ && over(q[0], q[1]))
-        return std::abs(q[2]);
-    return std::sqrt(
-        std::min({squared_distance(p, edge(0)), squared_distance(p, edge(1)), squared_distance(p, edge(2))}));
+    return !flat_ && over(q[0], q[1]) ? std::abs(q[2]) : std::sqrt(to_border2(p));
 }
 
 double TriangleFrame::distance(const TriangleFrame& other, double limit) const

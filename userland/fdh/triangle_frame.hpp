@@ -34,6 +34,9 @@ class TriangleFrame {
     /// In the frame; z is 0 if there is no plane.
     [[nodiscard]] Point to_frame(const Point& p) const;
     [[nodiscard]] Segment edge(int i) const { return {corners_[i], corners_[(i + 1) % 3]}; }
+    /// Squared distance to the nearest edge.
+    [[nodiscard]] double to_border2(const Segment& segment) const;
+    [[nodiscard]] double to_border2(const Point& p) const;
     /// Over the triangle, seen along z.
     [[nodiscard]] bool over(double x, double y) const;
     /// To the nearest place in the triangle's interior if that is where the segment, given in the frame,
@@ -43,13 +46,11 @@ class TriangleFrame {
     [[nodiscard]] double box_bound(const Point& from, const Point& to) const;
 
     Corners corners_; ///< the longest edge is from [0] to [1]
+    std::array<Point, 3> edges_{};
+    std::array<double, 3> inverse2_{}; ///< one over their squared lengths; 0 of none
     Point x_{}, y_{}, z_{};
     double base_ = 0, apex_x_ = 0, apex_y_ = 0;
     bool flat_ = false; ///< a segment or a point: has no plane
 };
-
-/// Squared distance between a point and a segment, and between two segments, as accurate.
-double squared_distance(const Point& p, const Segment& s);
-double squared_distance(const Segment& a, const Segment& b);
 
 } // namespace phantom::fdh
