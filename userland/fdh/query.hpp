@@ -16,6 +16,12 @@ struct Hit {
     double distance = 0;        ///< from the query's point, or segment, to the nearest point of the triangle
 };
 
+/// A triangle of one object and one of another.
+struct TrianglePair {
+    std::uint32_t first, second;
+    double distance; ///< 0 where they cross
+};
+
 /// What one query looked at, for benchmarks.
 struct QueryCounts {
     std::uint64_t nodes = 0;     ///< inner nodes, sixteen hulls each

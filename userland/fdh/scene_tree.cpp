@@ -7,6 +7,7 @@
 
 #include "fdh/collector.hpp"
 #include "fdh/object_tree.hpp"
+#include "fdh/pair_search.hpp"
 #include "fdh/region_search.hpp"
 #include "fdh/tree_impl.hpp"
 
@@ -254,6 +255,20 @@ void SceneTree<K>::pairs_near(std::uint32_t object, double distance, std::vector
     out.clear();
     if (distance >= 0)
         impl_->add_pairs(object, distance, false, out);
+}
+
+template <int K>
+void SceneTree<K>::triangle_pairs(std::uint32_t first, std::uint32_t second, double distance,
+                                  std::vector<TrianglePair>& out) const
+{
+    out.clear();
+    auto posed = [&](std::uint32_t i) {
+        const typename Impl::Object& object = impl_->objects.at(i);
+        return PosedTree<K>{object.tree.impl_->view, object.tree.impl_->data.grid, object.pose};
+    };
+    const PosedTree<K> a = posed(first), b = posed(second);
+    if (distance >= 0)
+        search_pairs<K>(a, b, distance, out);
 }
 
 template <int K>

@@ -60,6 +60,12 @@ class SceneTree {
     void pairs_near(std::uint32_t object, double distance, std::vector<ObjectPair>& out) const;
     /// All such pairs, each once with first < second, ordered.
     void pairs(double distance, std::vector<ObjectPair>& out) const;
+    /// Every pair of a triangle of the one object and one of the other that are within `distance`, in no
+    /// order: what the objects of a pair come down to. Never misses one; may include some that are farther,
+    /// by twice the sum of both trees' accuracies and 2^-48 of the largest coordinate of their poses and
+    /// meshes. Invalid distances and objects as for pairs_near().
+    void triangle_pairs(std::uint32_t first, std::uint32_t second, double distance,
+                        std::vector<TrianglePair>& out) const;
 
   private:
     struct Impl;

@@ -112,15 +112,20 @@ long double true_distance(const Corners& a, const Corners& b)
     return best;
 }
 
+double sphere_bound(const Corners& a, const Corners& b)
+{
+    const auto [p, r] = sphere_round(a);
+    const auto [q, s] = sphere_round(b);
+    return length(minus(p, q)) * (1 - 1e-12) - (r + s) * (1 + 1e-12);
+}
+
 long double true_distance(const Mesh& a, const Mesh& b, long double cutoff)
 {
     long double best = cutoff;
     for (std::size_t i = 0; i < a.triangles.size(); i++)
         for (std::size_t j = 0; j < b.triangles.size(); j++) {
             const Corners s = corners(a, i), t = corners(b, j);
-            const auto [p, r] = sphere_round(s);
-            const auto [q, u] = sphere_round(t);
-            if (std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) * (1 + 1e-12) - r - u < best)
+            if (sphere_bound(s, t) < best)
                 best = std::min(best, true_distance(s, t));
         }
     return best;

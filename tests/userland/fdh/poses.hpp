@@ -24,6 +24,8 @@ Corners corners(const Mesh& mesh, std::size_t triangle);
 long double true_distance(const Segment& segment, const Corners& triangle);
 /// Distance between two triangles: an edge of one of them is always at the nearest place.
 long double true_distance(const Corners& a, const Corners& b);
+/// A lower bound of that, from spheres.
+double sphere_bound(const Corners& a, const Corners& b);
 /// The least between their triangles, looked for no farther than `cutoff`: beyond, that is the answer.
 long double true_distance(const Mesh& a, const Mesh& b, long double cutoff);
 
