@@ -239,7 +239,7 @@ void SceneTree<K>::in_box(const Box& box, std::vector<Hit>& out) const
     if (!valid_box(box))
         return;
     impl_->level.visit(
-        slabs_of<K>(box), [] { return 0.0; },
+        slabs_of_box<K>(box), [] { return 0.0; },
         [&](std::uint32_t i) {
             const typename Impl::Object& object = impl_->objects[i];
             const auto& data = object.tree.impl_->data;

@@ -39,7 +39,7 @@ Slabs<K> slabs_of(const Point& p)
 
 /// A hull that holds the box, as far as there can be anything in it.
 template <int K>
-Slabs<K> slabs_of(const Box& box)
+Slabs<K> slabs_of_box(const Box& box)
 {
     constexpr auto directions = hull_directions<K>();
     constexpr double far = 8 * largest_coordinate; // beyond any posed vertex; infinities would make NaNs
