@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fdh/grid.hpp"
 #include "fdh/ranking.hpp"
 
 namespace phantom::fdh {
@@ -61,12 +62,8 @@ void NearestCollector::narrow()
     kept_limit_ = out_.hits[keep_ - 1].distance;
 }
 
-template <int K>
-void NearestCollector::search(const TreeView<K>& tree, const SearchKernels<K>& kernels,
-                              const SearchPoint<K>& point, double step, std::uint32_t object,
-                              const ErrorBound& error)
+Candidates NearestCollector::candidates(const ErrorBound& error, double step)
 {
-    note(error);
     if (const std::size_t wanted = std::min(keep_, spare_candidates) + spare_candidates;
         out_.distances2.size() < wanted) {
         out_.distances2.resize(wanted);
@@ -87,8 +84,13 @@ void NearestCollector::search(const TreeView<K>& tree, const SearchKernels<K>& k
         c.triangle = out.triangles.data();
         c.capacity = out.distances2.size();
     };
-    kernels.search(tree, point, found);
-    kernels.select(found);
+    return found;
+}
+
+template <int K>
+void NearestCollector::take(Candidates& found, const SearchKernels<K>& kernels, double step,
+                            std::uint32_t object)
+{
     if (size_ == 0 && found.size == keep_)
         kept_limit_ = std::sqrt(double{found.limit2}) * step;
     kernels.to_hits(found, object, step, room_for(found.size));
@@ -99,6 +101,37 @@ void NearestCollector::search(const TreeView<K>& tree, const SearchKernels<K>& k
     size_ += found.size;
     if (!first)
         narrow();
+}
+
+template <int K>
+void NearestCollector::search(const TreeView<K>& tree, const SearchKernels<K>& kernels,
+                              const SearchPoint<K>& point, double step, std::uint32_t object,
+                              const ErrorBound& error)
+{
+    note(error);
+    Candidates found = candidates(error, step);
+    kernels.search(tree, point, found);
+    kernels.select(found);
+    take(found, kernels, step, object);
+}
+
+template <int K>
+bool NearestCollector::search_some(std::span<const Leaf> leaves, double room, const SearchKernels<K>& kernels,
+                                   const SearchPoint<K>& point, double step, std::uint32_t object,
+                                   const ErrorBound& error)
+{
+    Candidates found = candidates(error, step);
+    const float room2 = room > 0 ? round_down(room * room / (step * step) * (1 - 0x1p-40)) : 0;
+    const bool all = found.limit2 <= room2;
+    if (!all)
+        found.limit2 = room2;
+    kernels.scan(leaves.data(), leaves.size(), point, found);
+    if (!all && found.size < keep_)
+        return false;
+    note(error);
+    kernels.select(found);
+    take(found, kernels, step, object);
+    return true;
 }
 
 class NearestCollector::HitSink final : public DistanceSink {
@@ -145,7 +178,7 @@ void NearestCollector::search_precisely(const TreeView<K>& tree, const Point& st
 void NearestCollector::finish()
 {
     out_.coverage = max_radius_;
-    double farthest = max_radius_;
+    double farthest = max_radius_ + error_.at(max_radius_);
     if (size_ == keep_) { // the farthest stands last
         // The error bound has room for the rounding of the difference.
         farthest = out_.hits[--size_].distance;
@@ -222,6 +255,9 @@ void WithinCollector::search_precisely(const TreeView<K>& tree, const Point& ste
 }
 
 #define PHANTOM_FDH_COLLECTOR(K)                                                                             \
+    template bool NearestCollector::search_some<K>(std::span<const Leaf>, double, const SearchKernels<K>&,   \
+                                                   const SearchPoint<K>&, double, std::uint32_t,             \
+                                                   const ErrorBound&);                                       \
     template void NearestCollector::search<K>(const TreeView<K>&, const SearchKernels<K>&,                   \
                                               const SearchPoint<K>&, double, std::uint32_t,                  \
                                               const ErrorBound&);                                            \

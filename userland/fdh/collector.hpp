@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "fdh/precise_search.hpp"
 #include "fdh/search.hpp"
@@ -32,6 +33,14 @@ class NearestCollector {
     template <int K>
     void search_precisely(const TreeView<K>& tree, const Point& steps, double step, std::uint32_t object,
                           const ErrorBound& error);
+    /// Looks only at some leaves, which hold all triangles of a tree within `room` of the point. False, and
+    /// nothing taken, if that is not enough to know the nearest.
+    template <int K>
+    [[nodiscard]] bool search_some(std::span<const Leaf> leaves, double room, const SearchKernels<K>& kernels,
+                                   const SearchPoint<K>& point, double step, std::uint32_t object,
+                                   const ErrorBound& error);
+    /// How far the answer reaches by now: to the farthest kept, or the limit if there are fewer.
+    [[nodiscard]] double reach() const { return limit(); }
 
     /// Cuts to `count` and computes the coverage. The collector is done then.
     void finish();
@@ -39,6 +48,9 @@ class NearestCollector {
   private:
     class HitSink;
     void note(const ErrorBound& error);
+    [[nodiscard]] Candidates candidates(const ErrorBound& error, double step);
+    template <int K>
+    void take(Candidates& found, const SearchKernels<K>& kernels, double step, std::uint32_t object);
     [[nodiscard]] Hit* room_for(std::size_t more);
     /// Once `keep_` hits are there: forgets the others and puts the farthest of them last.
     void narrow();

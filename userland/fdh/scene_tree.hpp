@@ -68,6 +68,7 @@ class SceneTree {
                         std::vector<TrianglePair>& out) const;
 
   private:
+    friend class CoherentQuery<K>;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

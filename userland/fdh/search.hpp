@@ -49,12 +49,26 @@ struct SearchPoint {
     bool prefetch;    ///< the tree is larger than the nearest caches
 };
 
+/// Where a search puts whole triangles: as leaves have them, but field by field. As many as there is room for.
+struct Gathered {
+    static constexpr std::size_t most = 1024;
+
+    float field[9][most + lanes]; ///< vertex, edge1, edge2
+    std::uint32_t triangle[most + lanes];
+    std::size_t size = 0;
+    bool complete = true; ///< there was room for all
+};
+
 template <int K>
 struct SearchKernels {
     /// Every triangle of the tree whose computed distance is within out.limit2 (which may shrink on the way).
     void (*search)(const TreeView<K>& tree, const SearchPoint<K>& point, Candidates& out);
-    /// If there are more than out.keep: moves those to the front, the farthest of them last, forgets the
-    /// others, and makes its squared distance the limit.
+    /// The same for some leaves, whatever tree they are of.
+    void (*scan)(const Leaf* leaves, std::size_t count, const SearchPoint<K>& point, Candidates& out);
+    /// Every triangle of the tree whose computed squared distance is within limit2.
+    void (*gather)(const TreeView<K>& tree, const SearchPoint<K>& point, float limit2, Gathered& out);
+    /// Once there are out.keep: moves those to the front, the farthest of them last, forgets the others, and
+    /// makes its squared distance the limit.
     void (*select)(Candidates& out);
     /// `hits` has room for as many as there are candidates, which are overwritten.
     void (*to_hits)(Candidates& from, std::uint32_t object, double step, Hit* hits);

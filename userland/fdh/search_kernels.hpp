@@ -216,8 +216,15 @@ struct Selection {
 
     static void select(Candidates& c)
     {
-        if (c.size <= c.keep)
+        if (c.size < c.keep)
             return;
+        if (c.size > c.keep)
+            drop(c);
+        c.limit2 = farthest_last(c);
+    }
+
+    static void drop(Candidates& c)
+    {
         for (std::size_t i = 0; i < Candidates::slack; i++) // what fills up the last vector is not counted
             c.distance2[c.size + i] = __builtin_inff();
         const float limit = threshold(c);
@@ -233,7 +240,6 @@ struct Selection {
         c.size = size;
         if (size > c.keep)
             drop_ties(c, limit);
-        c.limit2 = farthest_last(c);
     }
 
     /// Of the candidates' squared distances.
@@ -323,9 +329,25 @@ class Search {
   public:
     static void run(const TreeView<K>& tree, const SearchPoint<K>& point, Candidates& out)
     {
-        Search search(tree, point, out);
-        const std::uint32_t root = 0;
-        search.expand(tree.levels.count - 1, &root, 1);
+        Search search(tree, point, out, nullptr);
+        search.expand_root();
+    }
+
+    static void scan(const Leaf* leaves, std::size_t count, const SearchPoint<K>& point, Candidates& out)
+    {
+        Search search({nullptr, leaves, {}}, point, out, nullptr);
+        out.counts.leaves += count;
+        for (std::size_t i = 0; i < count; i++)
+            search.visit(leaves[i]);
+    }
+
+    static void gather(const TreeView<K>& tree, const SearchPoint<K>& point, float limit2, Gathered& out)
+    {
+        Candidates none; // but its limit
+        none.limit2 = limit2;
+        none.keep = static_cast<std::size_t>(-1);
+        Search search(tree, point, none, &out);
+        search.expand_root();
     }
 
   private:
@@ -346,8 +368,8 @@ class Search {
         float bound2[(batch + 1) * lanes];
     };
 
-    Search(const TreeView<K>& tree, const SearchPoint<K>& point, Candidates& out)
-        : tree_(tree), point_(point), out_(out)
+    Search(const TreeView<K>& tree, const SearchPoint<K>& point, Candidates& out, Gathered* gathered)
+        : tree_(tree), point_(point), out_(out), gathered_(gathered)
     {
         for (int i = 0; i < 3; i++) {
             V* const fields[2][3] = {{&at_.whole.x, &at_.whole.y, &at_.whole.z},
@@ -367,6 +389,12 @@ class Search {
 
     /// Whether finding something can make the limit smaller.
     [[nodiscard]] bool narrows() const { return out_.keep < static_cast<std::size_t>(-1); }
+
+    void expand_root()
+    {
+        const std::uint32_t root = 0;
+        expand(tree_.levels.count - 1, &root, 1);
+    }
 
     /// All that is near below some nodes of a level.
     void expand(int level, const std::uint32_t* nodes, unsigned count)
@@ -504,8 +532,12 @@ class Search {
             for (unsigned i = 0; i < count; i++)
                 prefetch(&tree_.leaves[leaves[i]], sizeof(Leaf));
         out_.counts.leaves += count;
-        for (unsigned i = 0; i < count; i++)
-            visit(tree_.leaves[leaves[i]]);
+        if (gathered_)
+            for (unsigned i = 0; i < count; i++)
+                gather(tree_.leaves[leaves[i]]);
+        else
+            for (unsigned i = 0; i < count; i++)
+                visit(tree_.leaves[leaves[i]]);
     }
 
     void visit(const Leaf& leaf)
@@ -515,15 +547,40 @@ class Search {
         const std::size_t before = out_.size;
         const V limit = S::set(out_.limit2);
         for (int lane = 0; lane < lanes; lane += S::width) {
-            V d2 = Distance::squared(leaf, lane, at_);
-            if (const unsigned needles = S::signs(leaf.triangle + lane))
-                d2 = measure_needles(leaf, lane, needles, d2);
+            const V d2 = squared(leaf, lane);
             const unsigned mask = S::bits(S::less_equal(d2, limit));
             S::compress(out_.distance2 + out_.size, d2, mask);
             S::compress_masked(out_.triangle + out_.size, leaf.triangle + lane, ~needle_flag, mask);
             out_.size += S::count(mask);
         }
         out_.counts.triangles += out_.size - before;
+    }
+
+    void gather(const Leaf& leaf)
+    {
+        Gathered& to = *gathered_;
+        if (to.size + lanes > Gathered::most) {
+            to.complete = false;
+            return;
+        }
+        const V limit = S::set(out_.limit2);
+        for (int lane = 0; lane < lanes; lane += S::width) {
+            const unsigned mask = S::bits(S::less_equal(squared(leaf, lane), limit));
+            for (int axis = 0; axis < 3; axis++) {
+                S::compress(to.field[axis] + to.size, S::load(leaf.vertex[axis] + lane), mask);
+                S::compress(to.field[3 + axis] + to.size, S::load(leaf.edge1[axis] + lane), mask);
+                S::compress(to.field[6 + axis] + to.size, S::load(leaf.edge2[axis] + lane), mask);
+            }
+            S::compress_masked(to.triangle + to.size, leaf.triangle + lane, ~0u, mask);
+            to.size += S::count(mask);
+        }
+    }
+
+    V squared(const Leaf& leaf, int lane)
+    {
+        const V d2 = Distance::squared(leaf, lane, at_);
+        const unsigned needles = S::signs(leaf.triangle + lane);
+        return needles ? measure_needles(leaf, lane, needles, d2) : d2;
     }
 
     [[gnu::noinline]] V measure_needles(const Leaf& leaf, int lane, unsigned needles, V computed)
@@ -540,7 +597,7 @@ class Search {
 
     void narrow_to_kept()
     {
-        if (out_.size > out_.keep) {
+        if (out_.size >= out_.keep) {
             Selection<I>::select(out_);
             narrow();
         }
@@ -553,9 +610,10 @@ class Search {
             out_.full(out_);
     }
 
-    const TreeView<K>& tree_;
+    const TreeView<K> tree_;
     const SearchPoint<K>& point_;
     Candidates& out_;
+    Gathered* gathered_; ///< if not null, takes what is near in place of out_
     typename Distance::Point at_;
     float hull_limit2_ = 0;
 };
@@ -592,7 +650,8 @@ struct Conversion {
 template <Isa I, int K>
 const SearchKernels<K>& kernels_of()
 {
-    static constexpr SearchKernels<K> table = {&Search<I, K>::run, &Selection<I>::select,
+    static constexpr SearchKernels<K> table = {&Search<I, K>::run, &Search<I, K>::scan,
+                                               &Search<I, K>::gather, &Selection<I>::select,
                                                &Conversion<I>::to_hits};
     return table;
 }

@@ -15,6 +15,8 @@ namespace phantom::fdh {
 
 template <int K>
 class SceneTree;
+template <int K>
+class CoherentQuery;
 
 struct BuildOptions {
     unsigned threads = 0; ///< 0: all cores. The tree is the same for any number.
@@ -106,6 +108,7 @@ class TriangleTree {
 
   private:
     friend class SceneTree<K>;
+    friend class CoherentQuery<K>;
     struct Impl;
     explicit TriangleTree(std::shared_ptr<const Impl> impl);
     std::shared_ptr<const Impl> impl_;

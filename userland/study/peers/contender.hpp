@@ -50,10 +50,13 @@ class Contender {
 
     /// True if refit() can be called.
     [[nodiscard]] virtual bool refits() const { return false; }
-    /// What a refit wants beforehand; not measured. `moved` has the triangles of the mesh and other vertices.
-    virtual void prepare_refit(const Mesh& /*moved*/) {}
-    /// Takes the hierarchy to the moved vertices, its structure as it is; measured.
-    virtual void refit(unsigned /*threads*/) {}
+    /// True if refit() can use more than one thread.
+    [[nodiscard]] virtual bool refits_parallel() const { return false; }
+    /// What a refit on so many threads wants beforehand; not measured. `moved` has the triangles of the mesh
+    /// and other vertices, and outlives the contender or its next prepare().
+    virtual void prepare_refit(const Mesh& /*moved*/, unsigned /*threads*/) {}
+    /// Takes the hierarchy to the moved vertices, its structure as it is; measured. May be called again.
+    virtual void refit() {}
 };
 
 } // namespace phantom::peers

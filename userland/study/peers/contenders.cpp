@@ -47,9 +47,18 @@ constexpr Library libraries[] = {{yardstick, "libembree-dev", embree},
                                  {"FCL", "libfcl-dev", fcl},
                                  {"VTK", "libvtk9-dev", vtk}};
 
+std::string name_of(const std::unique_ptr<Contender>& contender)
+{
+    return contender->name();
+}
+std::string name_of(const Absent& absent)
+{
+    return absent.name;
+}
+
 } // namespace
 
-Field field_for(const Mesh& mesh)
+Result<Field> field_for(const Mesh& mesh, const std::vector<std::string>& only)
 {
     Field field;
     field.contenders = own_contenders(mesh);
@@ -65,6 +74,19 @@ Field field_for(const Mesh& mesh)
         else
             field.contenders.push_back(std::move(contender));
     }
+    if (only.empty())
+        return field;
+    for (const std::string& name : only) {
+        const auto is_named = [&name](const auto& one) { return name == name_of(one); };
+        if (std::ranges::none_of(field.contenders, is_named) && std::ranges::none_of(field.absent, is_named))
+            return Error{name, "no such contender", "FDH6, Embree or another name of a table's row"};
+    }
+    const auto unwanted = [&only](const auto& one) {
+        return std::ranges::find(only, name_of(one)) == only.end();
+    };
+    field.contenders.erase(std::remove_if(field.contenders.begin() + 1, field.contenders.end(), unwanted),
+                           field.contenders.end());
+    std::erase_if(field.absent, unwanted);
     return field;
 }
 

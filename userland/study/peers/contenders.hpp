@@ -23,7 +23,8 @@ struct Field {
     std::vector<std::unique_ptr<Contender>> contenders;
     std::vector<Absent> absent;
 };
-Field field_for(const Mesh& mesh);
+/// With `only`, ours first and of the others those that it names; a name that nobody has is an error.
+Result<Field> field_for(const Mesh& mesh, const std::vector<std::string>& only = {});
 
 // Each in a file of its own, which is built where its library is installed.
 std::unique_ptr<Contender> make_embree();

@@ -8,10 +8,10 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "study/peers/contenders.hpp"
 #include "study/peers/nearest_keeper.hpp"
-#include "study/peers/triangle_distance.hpp"
 
 namespace phantom::peers {
 
@@ -34,7 +34,7 @@ class Embree final : public Contender {
     {
         drop();
         open_device(threads);
-        commit_scene();
+        commit_scene(RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_MEDIUM);
     }
     [[nodiscard]] bool builds_parallel() const override { return true; }
     [[nodiscard]] std::size_t bytes() const override { return static_cast<std::size_t>(bytes_.load()); }
@@ -47,26 +47,44 @@ class Embree final : public Contender {
         query.z = static_cast<float>(p[2]);
         query.time = 0;
         query.radius = static_cast<float>(radius);
-        point_ = {query.x, query.y, query.z};
-        keeper_.start(query.radius);
+        keeper_.start(*mesh_, p, radius);
         RTCPointQueryContext context;
         rtcInitPointQueryContext(&context);
-        rtcPointQuery(scene_, &query, &context, &visit, this);
+        rtcPointQuery(scene_, &query, &context, &visit, &keeper_);
         keeper_.finish();
     }
     void distances(std::vector<double>& out) const override { keeper_.distances(out); }
 
+    [[nodiscard]] bool refits() const override { return mesh_->triangles.size() <= refits_up_to; }
+    [[nodiscard]] bool refits_parallel() const override { return true; }
+    /// A scene that can be refitted is of another kind than one that is only queried: low quality, with a
+    /// tree for each geometry.
+    void prepare_refit(const Mesh& moved, unsigned threads) override
+    {
+        drop();
+        open_device(threads);
+        commit_scene(RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_REFIT);
+        mesh_ = &moved;
+        share_points(rtcGetGeometry(scene_, 0));
+    }
+    void refit() override
+    {
+        const RTCGeometry geometry = rtcGetGeometry(scene_, 0);
+        rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+        rtcCommitGeometry(geometry);
+        rtcCommitScene(scene_);
+    }
+
   private:
+    /// Beyond, its dynamic scene takes too much memory.
+    static constexpr std::size_t refits_up_to = 5'000'000;
+
     static bool visit(RTCPointQueryFunctionArguments* arguments)
     {
-        Embree& self = *static_cast<Embree*>(arguments->userPtr);
-        const fdh::Triangle& t = self.mesh_->triangles[arguments->primID];
-        const auto& points = self.mesh_->points;
-        const float distance2 = squared_distance(self.point_, as_vector(points[t[0]]),
-                                                 as_vector(points[t[1]]), as_vector(points[t[2]]));
-        if (!self.keeper_.offer(distance2, arguments->primID))
+        NearestKeeper& keeper = *static_cast<NearestKeeper*>(arguments->userPtr);
+        if (!keeper.offer(arguments->primID))
             return false;
-        arguments->query->radius = std::sqrt(self.keeper_.bound2());
+        arguments->query->radius = std::sqrt(keeper.bound2());
         return true;
     }
 
@@ -87,13 +105,20 @@ class Embree final : public Contender {
             this);
     }
 
-    void commit_scene()
+    void share_points(RTCGeometry geometry) const
     {
-        scene_ = rtcNewScene(device_);
-        rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
-        const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                    mesh_->points.data(), 0, sizeof(mesh_->points[0]), mesh_->points.size());
+    }
+
+    void commit_scene(RTCSceneFlags flags, RTCBuildQuality quality, RTCBuildQuality geometry_quality)
+    {
+        scene_ = rtcNewScene(device_);
+        rtcSetSceneFlags(scene_, flags);
+        rtcSetSceneBuildQuality(scene_, quality);
+        const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetGeometryBuildQuality(geometry, geometry_quality);
+        share_points(geometry);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    mesh_->triangles.data(), 0, sizeof(mesh_->triangles[0]),
                                    mesh_->triangles.size());
@@ -115,7 +140,6 @@ class Embree final : public Contender {
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
     std::atomic<std::ptrdiff_t> bytes_ = 0;
-    FloatVector point_{};
     NearestKeeper keeper_;
 };
 

@@ -1,45 +1,112 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// peers_bench: the 64 nearest triangles, by this project's hulls and by other libraries.
-#include <fmt/format.h>
-
+// peers_bench: the 64 nearest triangles, by this project's hulls and by other libraries, in one interleaved
+// run. Writes peers.csv, peers.md and peers.svg, all or none. Exit status 0, 1 (a wrong answer, a mesh or
+// file that cannot be had), 2 (usage).
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 
+#include "base/output_file.hpp"
 #include "study/peers/measure.hpp"
+#include "study/peers/report.hpp"
 
 namespace {
 
 using namespace phantom;
 using namespace phantom::peers;
 
-std::string number(const std::optional<double>& value, const char* format)
+constexpr int exit_failed = 1, exit_usage = 2;
+
+struct Options {
+    std::vector<std::string> meshes;
+    std::vector<std::string> contenders; ///< empty: all
+    std::filesystem::path out = ".";
+    bool quick = false;
+    MeasureOptions measure;
+};
+
+int fail(const Error& error)
 {
-    return value ? fmt::format(fmt::runtime(format), *value) : "-";
+    std::fprintf(stderr, "peers_bench: %s\n", error.text().c_str());
+    return exit_failed;
 }
 
-void print(const MeshFigures& mesh)
+void add_options(CLI::App& app, Options& options)
 {
-    std::printf("%s: %zu triangles, radius %.4g mm\n", mesh.mesh.c_str(), mesh.triangles, mesh.radius_mm);
-    std::printf("%-14s %7s %7s %6s %6s | %8s %8s %6s %6s %6s | %8s %8s %6s %6s %6s\n", "", "b/1", "b/all",
-                "B/tri", "refit", "walk ns", "p99", "ratio", "r p99", "leaves", "jump ns", "p99", "ratio",
-                "r p99", "leaves");
-    const Figures* base = mesh.of(yardstick);
-    for (const Figures& f : mesh.figures) {
-        const auto against = [&](auto of) { return base ? ratio(of(*base), of(f)) : std::nullopt; };
-        std::printf("%-14s %7s %7s %6.1f %6s | %8.0f %8.0f %6s %6s %6s | %8.0f %8.0f %6s %6s %6s\n",
-                    f.name.c_str(), number(median(f.build_one_mtri_s), "{:.2f}").c_str(),
-                    number(median(f.build_all_mtri_s), "{:.2f}").c_str(), f.bytes_per_triangle,
-                    number(median(f.refit_mtri_s), "{:.1f}").c_str(), f.walk.all_ns.median, f.walk.all_ns.p99,
-                    number(against([](const Figures& x) { return x.walk.median_ns; }), "{:.2f}").c_str(),
-                    number(against([](const Figures& x) { return x.walk.p99_ns; }), "{:.2f}").c_str(),
-                    number(f.walk.leaves, "{:.1f}").c_str(), f.jump.all_ns.median, f.jump.all_ns.p99,
-                    number(against([](const Figures& x) { return x.jump.median_ns; }), "{:.2f}").c_str(),
-                    number(against([](const Figures& x) { return x.jump.p99_ns; }), "{:.2f}").c_str(),
-                    number(f.jump.leaves, "{:.1f}").c_str());
+    app.add_option("--meshes", options.meshes,
+                   "sphere-20k, -200k, -2M, -20M or -F (20 F^2 triangles), spot-..., bunny, FILE; "
+                   "default: sphere-20k,sphere-200k,sphere-2M,sphere-20M,spot-200k,bunny")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("MESH,...");
+    app.add_option("--contenders", options.contenders, "FDH14 and these, e.g. FDH6,Embree; default: all")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("NAME,...");
+    app.add_option("--out", options.out, "folder for peers.csv, peers.md and peers.svg")
+        ->type_name("FOLDER")
+        ->capture_default_str();
+    app.add_option("--rounds", options.measure.rounds, "turns that every contender has on a path")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    app.add_flag("--quick", options.quick, "meshes of up to 200,000 triangles, ten rounds");
+}
+
+void settle(Options& options, bool rounds_given)
+{
+    if (options.meshes.empty())
+        options.meshes = options.quick ? std::vector<std::string>{"sphere-20k", "sphere-200k", "spot-200k"}
+                                       : std::vector<std::string>{"sphere-20k", "sphere-200k", "sphere-2M",
+                                                                  "sphere-20M", "spot-200k",   "bunny"};
+    if (!options.quick)
+        return;
+    if (!rounds_given)
+        options.measure.rounds = 10;
+    options.measure.build_seconds = 2;
+    options.measure.checked = 50;
+}
+
+Result<std::vector<MeshFigures>> measure_all(Options& options)
+{
+    std::vector<MeshFigures> all;
+    for (const std::string& name : options.meshes) {
+        options.measure.progress = [&name](const std::string& what) {
+            std::fprintf(stderr, "peers_bench: %s, %s\n", name.c_str(), what.c_str());
+        };
+        options.measure.progress("making");
+        const Result<Mesh> mesh = make_mesh(name);
+        if (!mesh)
+            return mesh.error();
+        Result<Field> field = field_for(*mesh, options.contenders);
+        if (!field)
+            return field.error();
+        Result<MeshFigures> figures = measure(*mesh, std::move(*field), options.measure);
+        if (!figures)
+            return figures.error();
+        all.push_back(std::move(*figures));
     }
-    for (const Absent& absent : mesh.absent)
-        std::printf("%s: %s\n", absent.name.c_str(), absent.why.c_str());
-    std::fflush(stdout);
+    return all;
+}
+
+Status write(const std::vector<MeshFigures>& all, const std::filesystem::path& folder)
+{
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    const std::pair<const char*, std::string> files[] = {
+        {"peers.csv", csv(all)}, {"peers.md", tables(all)}, {"peers.svg", chart(all)}};
+    std::vector<OutputFile> open;
+    for (const auto& [name, text] : files) {
+        Result<OutputFile> file = OutputFile::open(folder / name);
+        if (!file)
+            return file.error();
+        if (Status status = file->append(text); !status)
+            return status;
+        open.push_back(std::move(*file));
+    }
+    for (OutputFile& file : open)
+        if (Status status = file.commit(); !status)
+            return status;
+    return success();
 }
 
 } // namespace
@@ -47,24 +114,20 @@ void print(const MeshFigures& mesh)
 int main(int argc, char** argv)
 {
     CLI::App app("peers_bench: the 64 nearest triangles, by this project's hulls and by other libraries");
-    std::vector<std::string> meshes{"sphere-20k", "sphere-200k", "sphere-2M",
-                                    "sphere-20M", "spot-200k",   "bunny"};
-    app.add_option("--meshes", meshes, "sphere-20k, spot-200k, bunny, FILE, ...")->delimiter(',');
-    CLI11_PARSE(app, argc, argv);
-    MeasureOptions options;
-    options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); };
-    for (const std::string& name : meshes) {
-        const Result<Mesh> mesh = make_mesh(name);
-        if (!mesh) {
-            std::fprintf(stderr, "peers_bench: %s\n", mesh.error().text().c_str());
-            return 1;
-        }
-        const Result<MeshFigures> figures = measure(*mesh, options);
-        if (!figures) {
-            std::fprintf(stderr, "peers_bench: %s\n", figures.error().text().c_str());
-            return 1;
-        }
-        print(*figures);
+    Options options;
+    add_options(app, options);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        const int code = app.exit(error);
+        return code == 0 ? 0 : exit_usage;
     }
+    settle(options, app.count("--rounds") > 0);
+    const Result<std::vector<MeshFigures>> all = measure_all(options);
+    if (!all)
+        return fail(all.error());
+    if (Status status = write(*all, options.out); !status)
+        return fail(status.error());
+    std::printf("%s\nwritten: %s\n", tables(*all).c_str(), (options.out / "peers.{csv,md,svg}").c_str());
     return 0;
 }

@@ -21,8 +21,11 @@ struct MeasureOptions {
     std::size_t block = 200;     ///< queries of one contender in a row
     std::size_t lead_in = 16;    ///< queries before them that are not timed: they fetch the upper tree again
     std::size_t checked = 400;   ///< queries per path whose answers are compared before anything is timed
+    double path_seconds = 5;     ///< a contender that is too slow for all rounds takes part in fewer
+    double check_seconds = 1;    ///< and is checked in fewer queries
     double build_seconds = 12;   ///< about so long everyone's building is repeated, once at least
-    std::size_t most_builds = 7; ///< and not oftener
+    std::size_t most_builds = 7; ///< and not oftener; ours and the yardstick's at least
+    std::size_t fewest_builds = 2;
     std::function<void(const std::string&)> progress{};
 };
 
@@ -33,11 +36,12 @@ struct PathTimes {
     std::optional<double> leaves;          ///< mean per query
 };
 
-/// One contender on one mesh. Rates by round, so that ratios can be taken within one; empty: not measured.
+/// One contender on one mesh. Rates [million triangles a second] by round, so that ratios can be taken within
+/// one; empty: not measured.
 struct Figures {
     std::string name{}, method{};
-    std::vector<double> build_one_mtri_s{}, build_all_mtri_s{}; ///< one thread; all
-    std::vector<double> refit_mtri_s{};                         ///< one thread
+    std::vector<double> build_one{}, build_all{}; ///< on one thread, on all
+    std::vector<double> refit_one{}, refit_all{};
     double bytes_per_triangle = 0;
     PathTimes walk{}, jump{};
 };
@@ -53,12 +57,13 @@ struct MeshFigures {
     [[nodiscard]] const Figures* of(const std::string& name) const;
 };
 
-/// Median over the rounds of a[i] / b[i]; nothing if either was not measured.
+/// Median over the rounds of a[i] / b[i] in which both took part; nothing if there are none.
 std::optional<double> ratio(const std::vector<double>& a, const std::vector<double>& b);
 /// Nothing if empty.
 std::optional<double> median(std::vector<double> samples);
 
-/// The error names the contender whose answer is wrong, and the query.
-Result<MeshFigures> measure(const Mesh& mesh, const MeasureOptions& options);
+/// The error names the contender whose answer is wrong, and the query. Whoever is in the field is measured;
+/// the first is the one whose answers are held against brute force, and all others' against.
+Result<MeshFigures> measure(const Mesh& mesh, Field field, const MeasureOptions& options);
 
 } // namespace phantom::peers

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The 64 nearest of what a library's callback is offered, for libraries that do not keep them themselves. As
-// quick as it can be made, since its time is charged to them: a buffer, thinned out by a selection without
-// branches when it is full.
+// The 64 nearest of the triangles that a library finds near enough. No library here keeps them itself or
+// knows more than boxes, so distance and choice are ours, and as quick as they can be made one triangle at a
+// time, since their time is charged to it: a buffer, thinned out by a selection without branches when it is
+// full.
 #pragma once
 
 #include <algorithm>
@@ -12,20 +13,27 @@
 #include <vector>
 
 #include "study/peers/contender.hpp"
+#include "study/peers/triangle_distance.hpp"
 
 namespace phantom::peers {
 
 class NearestKeeper {
   public:
-    void start(float radius)
+    void start(const Mesh& mesh, const fdh::Point& p, double radius)
     {
+        points_ = mesh.points.data();
+        triangles_ = mesh.triangles.data();
+        p_ = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
         size_ = 0;
-        bound2_ = radius * radius;
+        bound2_ = static_cast<float>(radius) * static_cast<float>(radius);
     }
 
-    /// A triangle by its squared distance. True if the bound shrank.
-    bool offer(float distance2, std::uint32_t triangle)
+    /// True if the bound shrank.
+    bool offer(std::uint32_t triangle)
     {
+        const fdh::Triangle& t = triangles_[triangle];
+        const float distance2 = squared_distance(p_, as_vector(points_[t[0]]), as_vector(points_[t[1]]),
+                                                 as_vector(points_[t[2]]));
         if (!(distance2 <= bound2_))
             return false;
         // Floats that are not negative sort as their bits do.
@@ -50,13 +58,13 @@ class NearestKeeper {
     {
         out.clear();
         for (std::size_t i = 0; i < size_; ++i)
-            out.push_back(std::sqrt(double{distance2(kept_[i])}));
+            out.push_back(std::sqrt(double{distance2_of(kept_[i])}));
     }
 
   private:
     static constexpr std::size_t capacity = 2 * wanted;
 
-    static float distance2(std::uint64_t key)
+    static float distance2_of(std::uint64_t key)
     {
         return std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
     }
@@ -87,7 +95,7 @@ class NearestKeeper {
                 break;
         }
         size_ = wanted;
-        bound2_ = distance2(*std::max_element(kept_, kept_ + wanted));
+        bound2_ = distance2_of(*std::max_element(kept_, kept_ + wanted));
     }
 
     /// Nothing is below the pivot: what equals it goes to the front. Returns where the rest begins.
@@ -99,6 +107,9 @@ class NearestKeeper {
         return low;
     }
 
+    const std::array<float, 4>* points_ = nullptr;
+    const fdh::Triangle* triangles_ = nullptr;
+    FloatVector p_{};
     std::uint64_t kept_[capacity];
     std::size_t size_ = 0;
     float bound2_ = 0;

@@ -2,6 +2,8 @@
 // Time of a piece of code that takes a tenth of a microsecond.
 #pragma once
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -84,5 +86,14 @@ class Stopwatch {
     double step_ticks_ = 1; ///< by which the counter moves
     std::mt19937 random_{5};
 };
+
+/// Time that all threads of this process have computed [ns]: of work on one thread, what it takes however
+/// busy the machine is with others'.
+inline double cpu_ns()
+{
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
+}
 
 } // namespace phantom::peers
