@@ -246,23 +246,25 @@ TYPED_TEST(PairsTest, TrianglePairsMatchBruteForce)
         const Corners t = corners(faces, i);
         needles.add(t[0], t[1], t[2]);
     }
-    scene.add(soup(30, 20, random), random_pose(10, random));
-    scene.add(needles, random_pose(10, random));
-    scene.add(scaled(sphere(1, 1), 0.01, {30, 0, 0}), turn({1, 2, 3}, 2, {-30, 5, 0}));
+    scene.add(soup(40, 5, random), random_pose(1, random));
+    scene.add(scaled(needles, 0.1, {0, 0, 0}), random_pose(1, random));
+    scene.add(scaled(sphere(1, 3), 1, {30, 0, 0}), {{0, -1, 0, 1, 0, 0, 0, 0, 1}, {0, -28, 0}});
     scene.add(flat_grid(4), {});
     scene.add({}, {});
     scene.tree.update();
     std::vector<TrianglePair> found;
+    std::size_t total = 0;
     for (std::uint32_t i = 0; i < 5; i++)
         for (std::uint32_t j = 0; j < 5; j++) {
             if (i == j || (i < j) == ((i + j) % 2 == 0)) // either order, by turns
                 continue;
             const Mesh a = posed(scene.meshes[i], scene.tree.pose(i)),
                        b = posed(scene.meshes[j], scene.tree.pose(j));
-            const double distance = (i + j) % 3 == 0 ? 0 : (i + j) % 3 == 1 ? 0.5 : 4;
+            const double distance = (i + j) % 3 == 0 ? 0 : (i + j) % 3 == 1 ? 0.2 : 1;
             const double error =
                 scene.tree.tree(i).accuracy({0, 0, 0}, 0) + scene.tree.tree(j).accuracy({0, 0, 0}, 0);
             scene.tree.triangle_pairs(i, j, distance, found);
+            total += found.size();
             std::vector<double> given(a.triangles.size() * b.triangles.size(), -1);
             for (const TrianglePair& pair : found) {
                 double& place = given.at(pair.first * b.triangles.size() + pair.second);
@@ -280,6 +282,38 @@ TYPED_TEST(PairsTest, TrianglePairsMatchBruteForce)
                     ASSERT_NEAR(answer < 0 ? truth : answer, truth, error);
                 }
         }
+    EXPECT_GT(total, 100u);
+}
+
+// Two that share a corner, each in a grid of its own that rounds it; and sheets that are a hair too far
+// apart.
+TYPED_TEST(PairsTest, TrianglePairsThatTouchAreFoundAndNoneBeyondTheBound)
+{
+    constexpr int K = TypeParam::value;
+    std::mt19937_64 random(157);
+    Scene<K> scene;
+    std::vector<TrianglePair> found;
+    Mesh corner = soup(1, 10, random);
+    for (std::uint32_t i = 0; i < 60; i++) {
+        Mesh fan = soup(1, 10, random);
+        fan.vertices[0] = corner.vertices[0];
+        scene.add(fan, {});
+    }
+    scene.tree.update();
+    for (std::uint32_t i = 1; i < 60; i++) {
+        scene.tree.triangle_pairs(0, i, 0, found);
+        EXPECT_EQ(found.size(), 1u) << i;
+    }
+    Scene<K> sheets;
+    sheets.add(flat_grid(6), {});
+    sheets.add(flat_grid(5), {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.3, 0.2, 2}});
+    sheets.tree.update();
+    const double error =
+        sheets.tree.tree(0).accuracy({0, 0, 0}, 0) + sheets.tree.tree(1).accuracy({0, 0, 0}, 0);
+    sheets.tree.triangle_pairs(0, 1, 2 - 2.01 * error, found);
+    EXPECT_TRUE(found.empty());
+    sheets.tree.triangle_pairs(0, 1, 2, found);
+    EXPECT_GT(found.size(), 50u);
 }
 
 TEST(PairsTest, TrianglePairsOfThousandsAreThoseThatTouch)
