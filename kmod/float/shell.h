@@ -45,6 +45,7 @@
 #define SHELL_OVERLAP 3U
 #define SHELL_SUM 4U
 #define SHELL_DONE 5U
+#define SHELL_WEIGHED 6U /* effects/weigh.h */
 
 /* Between two sections of a tick; in the set's scratch. */
 struct shell_state {

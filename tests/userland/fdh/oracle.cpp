@@ -154,7 +154,8 @@ void expect_distances(const std::vector<Truth>& truth, const std::vector<Hit>& h
             return std::pair(t.object, t.triangle) < std::pair(h.object, h.triangle);
         });
         ASSERT_TRUE(it != truth.end() && it->object == hit.object && it->triangle == hit.triangle);
-        EXPECT_LE(std::abs(hit.distance - it->distance), accuracy(hit.distance)) << "triangle " << hit.triangle;
+        EXPECT_LE(std::abs(hit.distance - it->distance), accuracy(hit.distance))
+            << "triangle " << hit.triangle;
     }
 }
 

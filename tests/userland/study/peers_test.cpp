@@ -49,6 +49,9 @@ TEST(PeersAgreement, ATriangleThatWasMissedIsFound)
     EXPECT_TRUE(disagreement(answer, ladder(), 100, 1e-6));
     answer.erase(answer.begin() + 10);
     EXPECT_TRUE(disagreement(answer, ladder(), 100, 1e-6));
+    answer = ladder();
+    answer.pop_back(); // the last one, from among others that are right
+    EXPECT_TRUE(disagreement(answer, ladder(), 100, 1e-6));
 }
 
 TEST(PeersAgreement, ATriangleCountedTwiceIsFound)
@@ -64,8 +67,10 @@ TEST(PeersAgreement, ATriangleCountedTwiceIsFound)
 TEST(PeersAgreement, NoNumberIsNoDistance)
 {
     std::vector<double> answer = ladder();
-    answer[0] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_TRUE(disagreement(answer, ladder(), 100, 1e-6));
+    for (const double none : {std::numeric_limits<double>::quiet_NaN(), -1.0}) {
+        answer[0] = none;
+        EXPECT_TRUE(disagreement(answer, ladder(), 100, 2.0)) << none;
+    }
 }
 
 TEST(PeersAgreement, OnlyTheRadiusEndIsOpen)

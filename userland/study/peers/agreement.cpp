@@ -39,10 +39,13 @@ std::optional<std::string> disagreement(std::vector<double> answer, std::vector<
 {
     if (answer.size() > wanted)
         return fmt::format("{} triangles instead of {}", answer.size(), wanted);
+    for (const double distance : answer)
+        if (!(distance >= 0))
+            return fmt::format("{} is no distance", distance);
     complete(answer, radius);
     complete(expected, radius);
     for (std::size_t i = 0; i < wanted; ++i)
-        if (!(std::abs(answer[i] - expected[i]) <= tolerance))
+        if (std::abs(answer[i] - expected[i]) > tolerance)
             return fmt::format("number {} of the nearest is at {:.9g} mm, not {:.9g} (tolerance {:.2g})",
                                i + 1, answer[i], expected[i], tolerance);
     return std::nullopt;

@@ -48,7 +48,7 @@ class Bullet final : public Contender {
     {
         const std::size_t before = heap_bytes();
         tree_ = std::make_unique<btOptimizedBvh>();
-        tree_->build(arrays_.get(), mesh_->triangles.size() < compressed_up_to, low_, high_);
+        tree_->build(arrays_.get(), compressed(), low_, high_);
         bytes_ = heap_bytes() - before;
     }
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
@@ -65,7 +65,8 @@ class Bullet final : public Contender {
     }
     void distances(std::vector<double>& out) const override { keeper_.distances(out); }
 
-    [[nodiscard]] bool refits() const override { return true; }
+    /// Bullet's refit leaves uncompressed nodes as they are.
+    [[nodiscard]] bool refits() const override { return compressed(); }
     void prepare_refit(const Mesh& moved, unsigned /*threads*/) override
     {
         mesh_ = &moved;
@@ -85,6 +86,8 @@ class Bullet final : public Contender {
       private:
         NearestKeeper& keeper_;
     };
+
+    [[nodiscard]] bool compressed() const { return mesh_->triangles.size() < compressed_up_to; }
 
     static double twice_area(const Mesh& mesh, const fdh::Triangle& t)
     {

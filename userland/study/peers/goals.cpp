@@ -22,7 +22,7 @@ std::vector<std::optional<double>> of_each(Meshes meshes, const Measure& measure
 }
 
 /// How many times as long as `name` somebody else takes.
-Measure times_of(std::string other, std::string name, PathTimes Figures::*path,
+Measure times_of(const std::string& other, const std::string& name, PathTimes Figures::*path,
                  std::vector<double> PathTimes::*what)
 {
     return [=](const MeshFigures& mesh) -> std::optional<double> {

@@ -35,8 +35,8 @@ class Vtk final : public Contender {
         for (std::size_t i = 0; i < mesh.points.size(); ++i)
             points->SetPoint(static_cast<vtkIdType>(i), mesh.vertices[i].data());
         vtkNew<vtkCellArray> cells;
-        cells->AllocateExact(static_cast<vtkIdType>(mesh.triangles.size()),
-                             static_cast<vtkIdType>(3 * mesh.triangles.size()));
+        const auto count = static_cast<vtkIdType>(mesh.triangles.size());
+        cells->AllocateExact(count, 3 * count);
         for (const fdh::Triangle& t : mesh.triangles)
             cells->InsertNextCell({t[0], t[1], t[2]});
         surface_ = vtkSmartPointer<vtkPolyData>::New();
