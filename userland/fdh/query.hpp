@@ -13,7 +13,13 @@ namespace phantom::fdh {
 struct Hit {
     std::uint32_t object = 0;   ///< 0 in a query of a single tree
     std::uint32_t triangle = 0; ///< index in the MeshView it was built from
-    double distance = 0;        ///< from the query point to the nearest point of the triangle
+    double distance = 0;        ///< from the query's point, or segment, to the nearest point of the triangle
+};
+
+/// A triangle of one object and one of another.
+struct TrianglePair {
+    std::uint32_t first, second;
+    double distance; ///< 0 where they cross
 };
 
 /// What one query looked at, for benchmarks.

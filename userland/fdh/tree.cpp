@@ -7,6 +7,7 @@
 
 #include "fdh/collector.hpp"
 #include "fdh/parallel.hpp"
+#include "fdh/region_search.hpp"
 #include "fdh/tree_impl.hpp"
 
 namespace phantom::fdh {
@@ -111,6 +112,22 @@ void TriangleTree<K>::within(const Point& p, double radius, std::vector<Hit>& ou
         return;
     WithinCollector collector(out, radius);
     impl_->collect(p, 0, collector);
+}
+
+template <int K>
+void TriangleTree<K>::along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (valid_segment({from, to}, radius))
+        search_along<K>(impl_->view, impl_->data.grid, {from, to}, radius, 0, out);
+}
+
+template <int K>
+void TriangleTree<K>::in_box(const Box& box, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (valid_box(box))
+        search_box<K>(impl_->view, impl_->data.grid, {}, box, 0, out);
 }
 
 template <int K>

@@ -81,6 +81,16 @@ class TriangleTree {
     /// some that are farther, by twice accuracy(p, radius) at most. Invalid input as for nearest().
     void within(const Point& p, double radius, std::vector<Hit>& out) const;
 
+    /// Every triangle within radius of the segment, in no order: of the way from the tip to where it will be.
+    /// Never misses one; may include some that are farther, by twice accuracy(p, radius) at most, p the end
+    /// for which that is more. Invalid ends or radius find nothing.
+    void along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const;
+
+    /// Every triangle that touches the box, in no order; their distances are given as 0. Never misses one;
+    /// may include some that touch it only when it is widened on every side by twice accuracy(p, 0), p the
+    /// corner for which that is most. A box with low > high or a NaN finds nothing.
+    void in_box(const Box& box, std::vector<Hit>& out) const;
+
     /// Largest difference between a reported distance d from p and the true one [mesh unit]: 1.04e-7 of the
     /// mesh's half extent (the longest half side of its box, rounded up to a power of two), 2e-6 of d and of
     /// the longest edge, and 1.5e-14 of p's distance from the mesh's centre.

@@ -67,8 +67,11 @@ long double true_distance_from_origin(std::array<std::array<long double, 3>, 3> 
         component /= lengths[longest];
     Vector y = minus(corner[2], corner[0]);
     const Real cx = dot(y, x);
-    for (int i = 0; i < 3; i++)
-        y[i] -= cx * x[i];
+    for (int times = 0; times < 2; times++) { // of a needle, what is left the first time is mostly rounding
+        const Real along = dot(y, x);
+        for (int i = 0; i < 3; i++)
+            y[i] -= along * x[i];
+    }
     const Real cy = length(y);
     if (cy == 0)
         return best;
