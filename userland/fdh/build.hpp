@@ -35,7 +35,7 @@ TreeData<K> build_tree(const MeshView& mesh, unsigned threads, Isa isa);
 /// The same triangles in the same places of the tree, with the vertices of `mesh`. Throws as
 /// TriangleTree::refitted says.
 template <int K>
-TreeData<K> refit_tree(const TreeData<K>& old, const MeshView& mesh, unsigned threads);
+TreeData<K> refit_tree(const TreeData<K>& old, const MeshView& mesh, unsigned threads, Isa isa);
 
 /// False if the arrays do not fit each other, or a leaf names a triangle that is not there: a search would
 /// leave the arrays.

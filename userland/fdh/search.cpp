@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fdh/grid.hpp"
+#include "fdh/leaf.hpp"
 
 namespace phantom::fdh {
 
@@ -59,9 +60,27 @@ const SearchKernels<K>& search_kernels(Isa isa)
     }
 }
 
+template <int K>
+const LeafKernels<K>& leaf_kernels(Isa isa)
+{
+    switch (resolve_isa(isa)) {
+#ifdef PHANTOM_FDH_X86
+    case Isa::sse2:
+        return leaf_kernels_of<Isa::sse2, K>();
+    case Isa::avx2:
+        return leaf_kernels_of<Isa::avx2, K>();
+    case Isa::avx512:
+        return leaf_kernels_of<Isa::avx512, K>();
+#endif
+    default:
+        return leaf_kernels_of<Isa::scalar, K>();
+    }
+}
+
 #define PHANTOM_FDH_SEARCH_FOR(K)                                                                            \
     template SearchPoint<K> search_point<K>(const Point&, double, bool);                                     \
-    template const SearchKernels<K>& search_kernels<K>(Isa);
+    template const SearchKernels<K>& search_kernels<K>(Isa);                                                 \
+    template const LeafKernels<K>& leaf_kernels<K>(Isa);
 PHANTOM_FDH_SEARCH_FOR(6)
 PHANTOM_FDH_SEARCH_FOR(14)
 PHANTOM_FDH_SEARCH_FOR(18)

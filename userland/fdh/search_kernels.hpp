@@ -658,13 +658,3 @@ const SearchKernels<K>& kernels_of()
 }
 
 } // namespace phantom::fdh
-
-/// Instantiates everything for one instruction set.
-#define PHANTOM_FDH_KERNELS(isa)                                                                             \
-    namespace phantom::fdh {                                                                                 \
-    template const SearchKernels<6>& kernels_of<isa, 6>();                                                   \
-    template const SearchKernels<14>& kernels_of<isa, 14>();                                                 \
-    template const SearchKernels<18>& kernels_of<isa, 18>();                                                 \
-    template const SearchKernels<26>& kernels_of<isa, 26>();                                                 \
-    template const OrderKernels& order_kernels_of<isa>();                                                    \
-    }

@@ -31,6 +31,8 @@ struct Simd<Isa::scalar> {
     static Float min(Float a, Float b) { return a < b ? a : b; } // x86's rule for NaN: the second
     static Float max(Float a, Float b) { return a > b ? a : b; }
     static Float sqrt(Float a) { return __builtin_sqrtf(a); }
+    static float lowest(Float v) { return v; } // of all lanes
+    static float highest(Float v) { return v; }
     static Mask less(Float a, Float b) { return a < b; }
     static Mask less_equal(Float a, Float b) { return a <= b; }
     static Mask both(Mask a, Mask b) { return a && b; }
@@ -59,6 +61,16 @@ struct Simd<Isa::sse2> {
     static Float min(Float a, Float b) { return _mm_min_ps(a, b); }
     static Float max(Float a, Float b) { return _mm_max_ps(a, b); }
     static Float sqrt(Float a) { return _mm_sqrt_ps(a); }
+    static float lowest(Float v)
+    {
+        v = _mm_min_ps(v, _mm_movehl_ps(v, v));
+        return _mm_cvtss_f32(_mm_min_ss(v, _mm_shuffle_ps(v, v, 1)));
+    }
+    static float highest(Float v)
+    {
+        v = _mm_max_ps(v, _mm_movehl_ps(v, v));
+        return _mm_cvtss_f32(_mm_max_ss(v, _mm_shuffle_ps(v, v, 1)));
+    }
     static Mask less(Float a, Float b) { return _mm_cmplt_ps(a, b); }
     static Mask less_equal(Float a, Float b) { return _mm_cmple_ps(a, b); }
     static Mask both(Mask a, Mask b) { return _mm_and_ps(a, b); }
@@ -124,6 +136,18 @@ struct Simd<Isa::avx2> {
     static Float min(Float a, Float b) { return _mm256_min_ps(a, b); }
     static Float max(Float a, Float b) { return _mm256_max_ps(a, b); }
     static Float sqrt(Float a) { return _mm256_sqrt_ps(a); }
+    static float lowest(Float v)
+    {
+        __m128 h = _mm_min_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+        h = _mm_min_ps(h, _mm_movehl_ps(h, h));
+        return _mm_cvtss_f32(_mm_min_ss(h, _mm_shuffle_ps(h, h, 1)));
+    }
+    static float highest(Float v)
+    {
+        __m128 h = _mm_max_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+        h = _mm_max_ps(h, _mm_movehl_ps(h, h));
+        return _mm_cvtss_f32(_mm_max_ss(h, _mm_shuffle_ps(h, h, 1)));
+    }
     static Mask less(Float a, Float b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
     static Mask less_equal(Float a, Float b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
     static Mask both(Mask a, Mask b) { return _mm256_and_ps(a, b); }
@@ -176,6 +200,22 @@ struct Simd<Isa::avx512> {
     static Float min(Float a, Float b) { return _mm512_maskz_min_ps(all, a, b); }
     static Float max(Float a, Float b) { return _mm512_maskz_max_ps(all, a, b); }
     static Float sqrt(Float a) { return _mm512_maskz_sqrt_ps(all, a); }
+    static float lowest(Float v)
+    {
+        const __m256 q = _mm256_min_ps(lower(v), upper(v));
+        __m128 h = _mm_min_ps(_mm256_castps256_ps128(q), _mm256_extractf128_ps(q, 1));
+        h = _mm_min_ps(h, _mm_movehl_ps(h, h));
+        return _mm_cvtss_f32(_mm_min_ss(h, _mm_shuffle_ps(h, h, 1)));
+    }
+    static float highest(Float v)
+    {
+        const __m256 q = _mm256_max_ps(lower(v), upper(v));
+        __m128 h = _mm_max_ps(_mm256_castps256_ps128(q), _mm256_extractf128_ps(q, 1));
+        h = _mm_max_ps(h, _mm_movehl_ps(h, h));
+        return _mm_cvtss_f32(_mm_max_ss(h, _mm_shuffle_ps(h, h, 1)));
+    }
+    static __m256 lower(Float v) { return _mm512_maskz_extractf32x8_ps(0xff, v, 0); }
+    static __m256 upper(Float v) { return _mm512_maskz_extractf32x8_ps(0xff, v, 1); }
     static Mask less(Float a, Float b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
     static Mask less_equal(Float a, Float b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
     static Mask both(Mask a, Mask b) { return static_cast<Mask>(a & b); }

@@ -49,7 +49,7 @@ TriangleTree<K> TriangleTree<K>::refitted(const MeshView& mesh, const BuildOptio
 {
     check_isa(options.isa);
     return TriangleTree(std::make_shared<const Impl>(
-        refit_tree(impl_->data, mesh, thread_count(options.threads)), options.isa));
+        refit_tree(impl_->data, mesh, thread_count(options.threads), options.isa), options.isa));
 }
 
 template <int K>

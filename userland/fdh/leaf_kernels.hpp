@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How a leaf is made of its triangles' corners, written once over the width of the vectors. Included only by
+// kernels_<isa>.cpp; see the rules in search_kernels.hpp.
+#pragma once
+
+#include "fdh/leaf.hpp"
+#include "fdh/simd.hpp"
+
+namespace phantom::fdh {
+
+template <Isa I, int K>
+struct LeafMaker {
+    using S = Simd<I>;
+    using V = typename S::Float;
+
+    struct Vector {
+        V x, y, z;
+    };
+    static V dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    static Vector minus(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    static V length2(const Vector& a) { return dot(a, a); }
+    static Vector cross(const Vector& a, const Vector& b)
+    {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+    static Vector load(const float (&field)[3][lanes], int lane)
+    {
+        return {S::load(field[0] + lane), S::load(field[1] + lane), S::load(field[2] + lane)};
+    }
+    static void store(float (&field)[3][lanes], int lane, const Vector& v)
+    {
+        S::store(field[0] + lane, v.x);
+        S::store(field[1] + lane, v.y);
+        S::store(field[2] + lane, v.z);
+    }
+    using Mask = typename S::Mask;
+    static Vector select(Mask m, const Vector& a, const Vector& b)
+    {
+        return {S::select(m, a.x, b.x), S::select(m, a.y, b.y), S::select(m, a.z, b.z)};
+    }
+
+    /// Whether the normal, computed in float, would be too far off (needle_flag). A degenerate triangle's
+    /// computed normal is rounding error and as short as that.
+    static unsigned needles(const Vector& u, const Vector& v)
+    {
+        const V nn = length2(cross(u, v));
+        const V sine2 = S::set(static_cast<float>(needle_sine * needle_sine));
+        const Mask wide = S::both(S::less_equal(sine2 * length2(u) * length2(v), nn), S::less(S::set(0), nn));
+        return ~S::bits(wide) & ((1u << S::width) - 1);
+    }
+
+    /// Half the surface of a box, a step thicker than it is.
+    static V half_surface(V x, V y, V z)
+    {
+        const V one = S::set(1);
+        return (x + one) * ((y + one) + (z + one)) + (y + one) * (z + one);
+    }
+    static V size(V a, V b, V c) { return S::max(S::max(a, b), c) - S::min(S::min(a, b), c); }
+
+    template <int Sign>
+    static V signed_sum(V sum, V x)
+    {
+        return Sign > 0 ? sum + x : Sign < 0 ? sum - x : sum;
+    }
+    template <std::size_t Direction>
+    static V project(const Vector& p)
+    {
+        constexpr auto d = hull_directions<K>()[Direction];
+        return signed_sum<d[2]>(signed_sum<d[1]>(signed_sum<d[0]>(S::set(0), p.x), p.y), p.z);
+    }
+
+    template <std::size_t Direction>
+    static void bound(const Corners& corners, MadeLeaf<K>& made)
+    {
+        V low = S::set(__builtin_inff()), high = S::set(-__builtin_inff());
+        for (int lane = 0; lane < lanes; lane += S::width)
+            for (const auto& corner : corners) {
+                const V x = project<Direction>(load(corner, lane));
+                low = S::min(low, x);
+                high = S::max(high, x);
+            }
+        made.low[Direction] = S::lowest(low);
+        made.high[Direction] = S::highest(high);
+    }
+    template <std::size_t... Directions>
+    static void bound_all(const Corners& corners, MadeLeaf<K>& made, Indices<Directions...>)
+    {
+        (bound<Directions>(corners, made), ...);
+    }
+
+    static void make(const Corners& corners, Leaf& leaf, MadeLeaf<K>& made)
+    {
+        made.needles = 0;
+        V longest2 = S::set(0);
+        for (int lane = 0; lane < lanes; lane += S::width) {
+            const Vector a = load(corners[0], lane), b = load(corners[1], lane), c = load(corners[2], lane);
+            const V across_a = length2(minus(c, b)), across_b = length2(minus(a, c)),
+                    across_c = length2(minus(b, a));
+            const V longest = S::max(across_a, S::max(across_b, across_c));
+            const Mask is_a = S::less_equal(longest, across_a), is_b = S::less_equal(longest, across_b);
+            // Turned so that the longest edge is opposite the first corner.
+            const Vector first = select(is_a, a, select(is_b, b, c));
+            const Vector second = select(is_a, b, select(is_b, c, a));
+            const Vector third = select(is_a, c, select(is_b, a, b));
+            const Vector u = minus(second, first), v = minus(third, first);
+            store(leaf.vertex, lane, first);
+            store(leaf.edge1, lane, u);
+            store(leaf.edge2, lane, v);
+            made.needles |= needles(u, v) << lane;
+            longest2 = S::max(longest2, longest);
+            S::store(made.half_surface + lane,
+                     half_surface(size(a.x, b.x, c.x), size(a.y, b.y, c.y), size(a.z, b.z, c.z)));
+        }
+        made.longest_edge2 = S::highest(longest2);
+        bound_all(corners, made, typename Counted<K / 2>::Type{});
+    }
+};
+
+template <Isa I, int K>
+const LeafKernels<K>& leaf_kernels_of()
+{
+    static constexpr LeafKernels<K> table = {&LeafMaker<I, K>::make};
+    return table;
+}
+
+} // namespace phantom::fdh
