@@ -1,47 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "fdh/scene_tree.hpp"
 
-#include <stdexcept>
-#include <string>
+#include <algorithm>
 #include <utility>
 
-#include "fdh/collector.hpp"
-#include "fdh/object_tree.hpp"
-#include "fdh/tree_impl.hpp"
+#include "fdh/scene_tree_impl.hpp"
 
 namespace phantom::fdh {
-
-template <int K>
-struct SceneTree<K>::Impl {
-    struct Object {
-        TriangleTree<K> tree;
-        Pose pose;
-        Slabs<K> local{};         ///< the tree's hull
-        bool hull_is_old = false; ///< waits for update()
-    };
-    std::vector<Object> objects;
-    std::vector<Slabs<K>> hulls; ///< of each object, posed
-    std::vector<std::uint32_t> moved;
-    ObjectTree<K> level;
-
-    static void check(const Pose& pose, std::size_t object)
-    {
-        if (!finite(pose))
-            throw std::invalid_argument("fdh: object " + std::to_string(object) + ": its pose is not finite");
-    }
-
-    void mark(std::uint32_t object);
-    bool update();
-
-    /// Visits the objects whose hulls are within the collector's limit, near ones first.
-    template <class Collector>
-    void collect(const Point& p, Collector& collector) const;
-
-    /// Lower bound of the distance between two objects.
-    [[nodiscard]] double separation(std::uint32_t first, std::uint32_t second) const;
-    /// Adds the pairs of an object with others, of which only those behind it if `each_once`.
-    void add_pairs(std::uint32_t object, double distance, bool each_once, std::vector<ObjectPair>& out) const;
-};
 
 template <int K>
 void SceneTree<K>::Impl::mark(std::uint32_t object)
@@ -62,20 +27,6 @@ bool SceneTree<K>::Impl::update()
     const bool rebuilt = level.update(hulls, moved);
     moved.clear();
     return rebuilt;
-}
-
-template <int K>
-template <class Collector>
-void SceneTree<K>::Impl::collect(const Point& p, Collector& collector) const
-{
-    auto search = [&](std::uint32_t object) {
-        objects[object].tree.impl_->collect(to_local(objects[object].pose, p), object, collector);
-    };
-    if (objects.size() == 1) // its own root tells as much
-        search(0);
-    else
-        level.visit(
-            slabs_of<K>(p), [&] { return collector.limit(); }, search);
 }
 
 template <int K>
@@ -210,7 +161,6 @@ void SceneTree<K>::within(const Point& p, double radius, std::vector<Hit>& out) 
         return;
     WithinCollector collector(out, radius);
     impl_->collect(p, collector);
-    collector.finish();
 }
 
 template <int K>

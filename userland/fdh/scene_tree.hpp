@@ -58,6 +58,7 @@ class SceneTree {
     void pairs(double distance, std::vector<ObjectPair>& out) const;
 
   private:
+    friend class CoherentQuery<K>;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

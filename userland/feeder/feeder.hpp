@@ -45,11 +45,9 @@ class SetBuilder {
   public:
     /// patches_max: what the device takes in a set; build_all() does not ask.
     explicit SetBuilder(const scene::Scene& scene, std::uint32_t patches_max = PHANTOM_PATCHES_MAX);
-    /// hits by ascending distance; centre in world mm; coverage in mm as the query gave it. Patches,
-    /// materials or objects beyond what a set can carry cut it short: the coverage then ends at the first
-    /// left out.
-    void build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm, double coverage_mm,
-               device::PatchSet& out);
+    /// nearest: the answer to a query at the centre (world mm), sorted. Patches, materials or objects beyond
+    /// what a set can carry cut it short: the coverage then ends at the first left out.
+    void build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm, device::PatchSet& out);
     /// Every triangle of the scene, covering everything. centre in world mm.
     void build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out);
 

@@ -300,9 +300,11 @@ void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<d
         ++rims_from_[needed.hits];
 }
 
-void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
-                       double coverage_mm, device::PatchSet& out)
+void SetBuilder::build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm,
+                       device::PatchSet& out)
 {
+    const std::vector<fdh::Hit>& hits = nearest.hits;
+    double coverage_mm = nearest.coverage;
     begin(centre_mm, out);
     faces_.clear();
     for (const fdh::Hit& hit : hits)
@@ -312,7 +314,7 @@ void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<doubl
     for (std::size_t i = 0; i < hits.size(); ++i) {
         patches += 1 + scene_.objects[hits[i].object].fans.of(hits[i].triangle).size() + rims_from_[i + 1];
         if (patches > patches_max_ || !claim(hits[i].object, out)) {
-            coverage_mm = std::min(coverage_mm, hits[i].distance);
+            coverage_mm = std::clamp(hits[i].distance - nearest.distance_error, 0.0, coverage_mm);
             faces_.resize(i);
             break;
         }
