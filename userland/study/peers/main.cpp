@@ -2,9 +2,13 @@
 // peers_bench: the 64 nearest triangles, by this project's hulls and by other libraries, in one interleaved
 // run. Writes peers.csv, peers.md and peers.svg, all or none. Exit status 0, 1 (a wrong answer, a mesh or
 // file that cannot be had), 2 (usage).
+#include <fmt/format.h>
+#include <stdlib.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <thread>
 
 #include "base/output_file.hpp"
 #include "study/peers/measure.hpp"
@@ -88,12 +92,26 @@ Result<std::vector<MeshFigures>> measure_all(Options& options)
     return all;
 }
 
-Status write(const std::vector<MeshFigures>& all, const std::filesystem::path& folder)
+/// What else the machine is doing, if that matters.
+std::string load_note()
+{
+    double load = 0;
+    const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+    if (getloadavg(&load, 1) != 1 || load < 0.5 * processors)
+        return "";
+    return fmt::format(
+        "The machine was not quiet: load {:.1f} on {} processors before the run. Ratios hold; rates "
+        "on all threads are too low.\n\n",
+        load, processors);
+}
+
+Status write(const std::vector<MeshFigures>& all, const std::string& words,
+             const std::filesystem::path& folder)
 {
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     const std::pair<const char*, std::string> files[] = {
-        {"peers.csv", csv(all)}, {"peers.md", tables(all)}, {"peers.svg", chart(all)}};
+        {"peers.csv", csv(all)}, {"peers.md", words}, {"peers.svg", chart(all)}};
     std::vector<OutputFile> open;
     for (const auto& [name, text] : files) {
         Result<OutputFile> file = OutputFile::open(folder / name);
@@ -123,11 +141,13 @@ int main(int argc, char** argv)
         return code == 0 ? 0 : exit_usage;
     }
     settle(options, app.count("--rounds") > 0);
+    const std::string note = load_note();
     const Result<std::vector<MeshFigures>> all = measure_all(options);
     if (!all)
         return fail(all.error());
-    if (Status status = write(*all, options.out); !status)
+    const std::string words = note + tables(*all);
+    if (Status status = write(*all, words, options.out); !status)
         return fail(status.error());
-    std::printf("%s\nwritten: %s\n", tables(*all).c_str(), (options.out / "peers.{csv,md,svg}").c_str());
+    std::printf("%s\nwritten: %s\n", words.c_str(), (options.out / "peers.{csv,md,svg}").c_str());
     return 0;
 }

@@ -57,7 +57,10 @@ class Walker {
         return reach[radius_samples / 2];
     }
 
-    [[nodiscard]] double accuracy(const fdh::Point& p, double distance) const { return tree_.accuracy(p, distance); }
+    [[nodiscard]] double accuracy(const fdh::Point& p, double distance) const
+    {
+        return tree_.accuracy(p, distance);
+    }
 
     void stroke(std::size_t steps, std::vector<fdh::Point>& out)
     {
