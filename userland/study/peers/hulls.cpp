@@ -45,11 +45,17 @@ std::optional<fdh::TriangleTree<K>> copy_of(const fdh::TriangleTree<K>& tree, fd
     return fdh::TriangleTree<K>::open(copy, kept, isa);
 }
 
+template <int K>
+std::string hulls()
+{
+    return "FDH" + std::to_string(K);
+}
+
 /// A query through the tree as it is.
 template <int K>
 class Stateless : public Contender {
   public:
-    [[nodiscard]] std::string name() const override { return "FDH" + std::to_string(K); }
+    [[nodiscard]] std::string name() const override { return hulls<K>(); }
     [[nodiscard]] std::string method() const override { return "TriangleTree::nearest"; }
     void prepare(const Mesh& mesh) override
     {
@@ -101,7 +107,7 @@ class WithIsa : public Stateless<K> {
   public:
     /// The source outlives this contender.
     WithIsa(const Stateless<K>& source, fdh::Isa isa) : source_(source), isa_(isa) {}
-    [[nodiscard]] std::string name() const override { return Stateless<K>::name() + suffix(); }
+    [[nodiscard]] std::string name() const override { return hulls<K>() + suffix(); }
     [[nodiscard]] bool refits() const override { return false; }
     void build(unsigned /*threads*/) override { this->tree_ = copy_of(source_.tree(), isa_); }
     [[nodiscard]] bool builds() const override { return false; }
@@ -122,10 +128,7 @@ template <int K>
 class Coherent final : public WithIsa<K> {
   public:
     using WithIsa<K>::WithIsa;
-    [[nodiscard]] std::string name() const override
-    {
-        return Stateless<K>::name() + " coherent" + this->suffix();
-    }
+    [[nodiscard]] std::string name() const override { return hulls<K>() + " coherent" + this->suffix(); }
     [[nodiscard]] std::string method() const override { return "CoherentQuery::nearest"; }
     void query(const fdh::Point& p, double radius) override
     {

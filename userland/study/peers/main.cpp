@@ -8,6 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <thread>
 
 #include "base/output_file.hpp"
@@ -70,7 +72,20 @@ void settle(Options& options, bool rounds_given)
     options.measure.checked = 50;
 }
 
-Result<std::vector<MeshFigures>> measure_all(Options& options)
+/// What a run takes at its peak, everyone's hierarchy at once [byte per triangle].
+constexpr double run_bytes_per_triangle = 450;
+
+double free_bytes()
+{
+    std::ifstream file("/proc/meminfo");
+    for (std::string word; file >> word;)
+        if (double kib = 0; word == "MemAvailable:" && file >> kib)
+            return 1024 * kib;
+    return std::numeric_limits<double>::max();
+}
+
+/// Meshes that there is no memory for are left out, and `note` says so.
+Result<std::vector<MeshFigures>> measure_all(Options& options, std::string& note)
 {
     std::vector<MeshFigures> all;
     for (const std::string& name : options.meshes) {
@@ -81,6 +96,12 @@ Result<std::vector<MeshFigures>> measure_all(Options& options)
         const Result<Mesh> mesh = make_mesh(name);
         if (!mesh)
             return mesh.error();
+        const double needed = run_bytes_per_triangle * static_cast<double>(mesh->triangles.size());
+        if (needed > free_bytes()) {
+            note +=
+                fmt::format("{} was left out: it needs {:.0f} GB of free memory.\n\n", name, 1e-9 * needed);
+            continue;
+        }
         Result<Field> field = field_for(*mesh, options.contenders);
         if (!field)
             return field.error();
@@ -141,8 +162,8 @@ int main(int argc, char** argv)
         return code == 0 ? 0 : exit_usage;
     }
     settle(options, app.count("--rounds") > 0);
-    const std::string note = load_note();
-    const Result<std::vector<MeshFigures>> all = measure_all(options);
+    std::string note = load_note();
+    const Result<std::vector<MeshFigures>> all = measure_all(options, note);
     if (!all)
         return fail(all.error());
     const std::string words = note + tables(*all);
