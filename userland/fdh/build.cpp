@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "fdh/parallel.hpp"
 #include "fdh/order.hpp"
+#include "fdh/parallel.hpp"
 
 namespace phantom::fdh {
 
@@ -141,8 +141,7 @@ void find_needles(const Leaf& leaf, bool (&needle)[lanes])
     for (int lane = 0; lane < lanes; lane++) {
         const float u[3] = {leaf.edge1[0][lane], leaf.edge1[1][lane], leaf.edge1[2][lane]};
         const float v[3] = {leaf.edge2[0][lane], leaf.edge2[1][lane], leaf.edge2[2][lane]};
-        const float n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                            u[0] * v[1] - u[1] * v[0]};
+        const float n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
         const float nn = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
         const float uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
         const float vv = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -312,9 +311,9 @@ struct Storage {
     {
     }
     struct Release {
-        void operator()(void* memory) const { ::operator delete(memory, std::align_val_t{64}); }
+        void operator()(void* memory) const { ::operator delete (memory, std::align_val_t{64}); }
     };
-    static void* allocate(std::size_t bytes) { return ::operator new(bytes, std::align_val_t{64}); }
+    static void* allocate(std::size_t bytes) { return ::operator new (bytes, std::align_val_t{64}); }
 
     std::unique_ptr<Node<K>, Release> nodes;
     std::unique_ptr<Leaf, Release> leaves;
@@ -375,8 +374,7 @@ void check_count(const MeshView& mesh)
 {
     if (mesh.triangles.size() >= most_triangles)
         throw std::invalid_argument("fdh: " + std::to_string(mesh.triangles.size()) +
-                                    " triangles in one tree; it holds " +
-                                    std::to_string(most_triangles - 1));
+                                    " triangles in one tree; it holds " + std::to_string(most_triangles - 1));
 }
 
 } // namespace
@@ -393,7 +391,8 @@ TreeData<K> build_tree(const MeshView& mesh, unsigned threads, Isa isa)
     data.grid = Grid::over(low, high);
     Centres centres = centres_of(mesh, data.grid, threads);
     order_by_halves(centres, threads, isa);
-    fill(data, mesh, [&](std::size_t i) { return centres.number()[i]; }, threads);
+    fill(
+        data, mesh, [&](std::size_t i) { return centres.number()[i]; }, threads);
     return data;
 }
 
@@ -409,8 +408,9 @@ TreeData<K> refit_tree(const TreeData<K>& old, const MeshView& mesh, unsigned th
         return data;
     const auto [low, high] = bounds(mesh, threads);
     data.grid = Grid::over(low, high);
-    fill(data, mesh,
-         [&](std::size_t i) { return old.leaves[i / lanes].triangle[i % lanes] & ~needle_flag; }, threads);
+    fill(
+        data, mesh, [&](std::size_t i) { return old.leaves[i / lanes].triangle[i % lanes] & ~needle_flag; },
+        threads);
     return data;
 }
 

@@ -18,11 +18,14 @@ struct TreeData {
     std::span<const Node<K>> nodes; ///< level by level (Levels), [0] is the root; empty for no triangles
     std::span<const Leaf> leaves;
     std::size_t triangles = 0;
-    double longest_edge = 0; ///< [steps], or more
-    double spread = 0;       ///< see TriangleTree::spread
+    double longest_edge = 0;               ///< [steps], or more
+    double spread = 0;                     ///< see TriangleTree::spread
     std::shared_ptr<const void> storage{}; ///< what nodes and leaves lie in
 
-    [[nodiscard]] TreeView<K> view() const { return {nodes.data(), leaves.data(), Levels::above(leaves.size())}; }
+    [[nodiscard]] TreeView<K> view() const
+    {
+        return {nodes.data(), leaves.data(), Levels::above(leaves.size())};
+    }
 };
 
 /// Throws as TriangleTree::build says.

@@ -56,7 +56,8 @@ class CoherentQuery<K>::Sphere {
                          (a[2] - b[2]) * (a[2] - b[2]));
     }
 
-    [[nodiscard]] bool from_leaves(const Point& steps, std::uint32_t object, NearestCollector& collector) const
+    [[nodiscard]] bool from_leaves(const Point& steps, std::uint32_t object,
+                                   NearestCollector& collector) const
     {
         if (leaves_.empty())
             return false;
@@ -114,9 +115,9 @@ class CoherentQuery<K>::Sphere {
     }
 
     std::shared_ptr<const Tree> tree_;
-    Point centre_{}, last_{}; ///< [steps]
-    double radius_ = 0;       ///< [mesh unit]
-    double reach_ = 0;        ///< of the last answer [mesh unit]
+    Point centre_{}, last_{};  ///< [steps]
+    double radius_ = 0;        ///< [mesh unit]
+    double reach_ = 0;         ///< of the last answer [mesh unit]
     std::vector<Leaf> leaves_; ///< empty: nothing at hand
     std::unique_ptr<Gathered> gathered_;
 };

@@ -14,9 +14,9 @@ namespace phantom::fdh {
 /// One walk. Gives the same answers as TriangleTree::nearest and SceneTree::nearest, bit for bit. For one
 /// thread at a time; the trees may be queried by others meanwhile. No allocation once warm.
 ///
-/// How much larger the sphere is follows the point's steps: of reach R and step s it is about sqrt(s / R) more,
-/// where what the larger sphere costs per query balances what taking a new one costs. Steps above a fifth of
-/// the reach are answered by the tree.
+/// How much larger the sphere is follows the point's steps: of reach R and step s it is about sqrt(s / R)
+/// more, where what the larger sphere costs per query balances what taking a new one costs. Steps above a
+/// fifth of the reach are answered by the tree.
 template <int K>
 class CoherentQuery {
   public:

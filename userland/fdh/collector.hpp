@@ -56,7 +56,7 @@ class NearestCollector {
     void narrow();
 
     Nearest& out_;
-    std::size_t keep_; ///< one more than asked for: the nearest left out tells how far the rest reach
+    std::size_t keep_;     ///< one more than asked for: the nearest left out tells how far the rest reach
     std::size_t size_ = 0; ///< hits so far; out_.hits may be longer
     double max_radius_;
     ErrorBound error_;  ///< the worst of the trees searched

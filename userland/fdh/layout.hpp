@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A triangle tree in memory: sixteen-wide nodes and leaves, each field an array over the sixteen lanes so that
-// one instruction tests them all. Coordinates are whole grid steps (grid.hpp).
+// A triangle tree in memory: sixteen-wide nodes and leaves, each field an array over the sixteen lanes so
+// that one instruction tests them all. Coordinates are whole grid steps (grid.hpp).
 //
 // The tree is full: all leaves but the last hold sixteen triangles, all nodes but the last of each level have
 // sixteen children, and all leaves are equally deep. So no child needs a reference: child j of node i of a
@@ -20,16 +20,16 @@ inline constexpr std::size_t most_triangles = 0x7fffffff;
 /// Levels of nodes above most_triangles / 16 leaves.
 inline constexpr int most_levels = 7;
 
-/// Hulls of up to sixteen children. An unused lane is the empty hull (low = +inf, high = -inf): infinitely far
-/// from every point, and neutral in a union.
+/// Hulls of up to sixteen children. An unused lane is the empty hull (low = +inf, high = -inf): infinitely
+/// far from every point, and neutral in a union.
 template <int K>
 struct alignas(64) Node {
     float low[K / 2][lanes];
     float high[K / 2][lanes];
 };
 
-/// Up to sixteen triangles: a vertex, opposite the longest edge, and the edges from it to the next and the one
-/// after, all exact. An unused lane has a NaN vertex: its distance is NaN, which compares as no hit.
+/// Up to sixteen triangles: a vertex, opposite the longest edge, and the edges from it to the next and the
+/// one after, all exact. An unused lane has a NaN vertex: its distance is NaN, which compares as no hit.
 struct alignas(64) Leaf {
     float vertex[3][lanes];
     float edge1[3][lanes];
@@ -41,13 +41,13 @@ struct alignas(64) Leaf {
 /// Set for a triangle so thin that floats would not know its plane well enough: its distance is computed in
 /// double. Also set in no_triangle.
 inline constexpr std::uint32_t needle_flag = 0x80000000u;
-/// Where the sine of the largest angle is below this. A thin triangle with a short edge is none: its angles at
-/// that edge are wide.
+/// Where the sine of the largest angle is below this. A thin triangle with a short edge is none: its angles
+/// at that edge are wide.
 inline constexpr double needle_sine = 0.125;
 inline constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
 
-/// How many levels of nodes stand above so many leaves, and where each begins. Level 0 is the lowest; the root
-/// stands first in memory.
+/// How many levels of nodes stand above so many leaves, and where each begins. Level 0 is the lowest; the
+/// root stands first in memory.
 struct Levels {
     int count = 0;
     std::uint32_t base[most_levels] = {}; ///< index of the level's first node

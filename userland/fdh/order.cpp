@@ -46,7 +46,9 @@ class Halver {
         const std::size_t middle = begin + (size + subtree - 1) / subtree / 2 * subtree;
         float extent[3];
         kernels_.extent(columns_, begin, end, extent);
-        const int axis = extent[0] >= extent[1] ? extent[0] >= extent[2] ? 0 : 2 : extent[1] >= extent[2] ? 1 : 2;
+        const int axis = extent[0] >= extent[1]   ? extent[0] >= extent[2] ? 0 : 2
+                         : extent[1] >= extent[2] ? 1
+                                                  : 2;
         if (extent[axis] > 0)
             select(begin, end, middle, axis);
         constexpr std::size_t worth_a_thread = 16384;

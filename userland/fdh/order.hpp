@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The order of the triangles in the leaves: halved again and again along the longest axis of their centres, at
-// whole subtrees of sixteen, so that every leaf and every node is full.
+// The order of the triangles in the leaves: halved again and again along the longest axis of their centres,
+// at whole subtrees of sixteen, so that every leaf and every node is full.
 //
 // Halving by count instead of by surface area costs a few per cent more visited leaves on meshes of very
 // uneven faces, and buys a tree without references, a third smaller, built twice as fast.

@@ -13,7 +13,13 @@ namespace phantom::fdh {
 struct Hit {
     std::uint32_t object = 0;   ///< 0 in a query of a single tree
     std::uint32_t triangle = 0; ///< index in the MeshView it was built from
-    double distance = 0;        ///< from the query point to the nearest point of the triangle
+    double distance = 0;        ///< from the query's point, or segment, to the nearest point of the triangle
+};
+
+/// A triangle of one object and one of another.
+struct TrianglePair {
+    std::uint32_t first, second;
+    double distance; ///< 0 where they cross
 };
 
 /// What one query looked at, for benchmarks.
@@ -23,9 +29,9 @@ struct QueryCounts {
     std::uint64_t triangles = 0; ///< found near enough, of which the nearest were kept
 };
 
-/// Result of "the N nearest within a radius", and the radius they cover: every triangle nearer than `coverage`
-/// is among the hits. coverage = max_radius when fewer than N triangles were found, otherwise the distance
-/// of the nearest one left out, rounded down so that it holds.
+/// Result of "the N nearest within a radius", and the radius they cover: every triangle nearer than
+/// `coverage` is among the hits. coverage = max_radius when fewer than N triangles were found, otherwise the
+/// distance of the nearest one left out, rounded down so that it holds.
 struct Nearest {
     std::vector<Hit> hits; ///< in no order; among equally near ones those of the lowest (object, triangle)
     double coverage = 0;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "fdh/pair_search.hpp"
+#include "fdh/region_search.hpp"
 #include "fdh/scene_tree_impl.hpp"
 
 namespace phantom::fdh {
@@ -164,6 +166,39 @@ void SceneTree<K>::within(const Point& p, double radius, std::vector<Hit>& out) 
 }
 
 template <int K>
+void SceneTree<K>::along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (!valid_segment({from, to}, radius))
+        return;
+    Slabs<K> hull = slabs_of<K>(from);
+    grow<K>(hull, slabs_of<K>(to));
+    impl_->level.visit(
+        hull, [&] { return radius; },
+        [&](std::uint32_t i) {
+            const typename Impl::Object& object = impl_->objects[i];
+            const Segment local = {to_local(object.pose, from), to_local(object.pose, to)};
+            const auto& data = object.tree.impl_->data;
+            search_along<K>(object.tree.impl_->view, data.grid, local, radius, i, out);
+        });
+}
+
+template <int K>
+void SceneTree<K>::in_box(const Box& box, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (!valid_box(box))
+        return;
+    impl_->level.visit(
+        slabs_of_box<K>(box), [] { return 0.0; },
+        [&](std::uint32_t i) {
+            const typename Impl::Object& object = impl_->objects[i];
+            const auto& data = object.tree.impl_->data;
+            search_box<K>(object.tree.impl_->view, data.grid, object.pose, box, i, out);
+        });
+}
+
+template <int K>
 void SceneTree<K>::pairs_near(std::uint32_t object, double distance, std::vector<ObjectPair>& out) const
 {
     if (object >= impl_->objects.size())
@@ -171,6 +206,20 @@ void SceneTree<K>::pairs_near(std::uint32_t object, double distance, std::vector
     out.clear();
     if (distance >= 0)
         impl_->add_pairs(object, distance, false, out);
+}
+
+template <int K>
+void SceneTree<K>::triangle_pairs(std::uint32_t first, std::uint32_t second, double distance,
+                                  std::vector<TrianglePair>& out) const
+{
+    out.clear();
+    auto posed = [&](std::uint32_t i) {
+        const typename Impl::Object& object = impl_->objects.at(i);
+        return PosedTree<K>{object.tree.impl_->view, object.tree.impl_->data.grid, object.pose};
+    };
+    const PosedTree<K> a = posed(first), b = posed(second);
+    if (distance >= 0)
+        search_pairs<K>(a, b, distance, out);
 }
 
 template <int K>

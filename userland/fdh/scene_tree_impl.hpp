@@ -35,8 +35,8 @@ struct SceneTree<K>::Impl {
     void mark(std::uint32_t object);
     bool update();
 
-    /// Calls search(object, p in its frame) for the objects whose hulls are within the collector's limit, near
-    /// ones first.
+    /// Calls search(object, p in its frame) for the objects whose hulls are within the collector's limit,
+    /// near ones first.
     template <class Collector, class Search>
     void visit(const Point& p, const Collector& collector, const Search& search) const
     {

@@ -49,7 +49,8 @@ struct SearchPoint {
     bool prefetch;    ///< the tree is larger than the nearest caches
 };
 
-/// Where a search puts whole triangles: as leaves have them, but field by field. As many as there is room for.
+/// Where a search puts whole triangles: as leaves have them, but field by field. As many as there is room
+/// for.
 struct Gathered {
     static constexpr std::size_t most = 1024;
 
@@ -74,8 +75,8 @@ struct SearchKernels {
     void (*to_hits)(Candidates& from, std::uint32_t object, double step, Hit* hits);
 };
 
-/// Points farther than this from the tree's origin in some axis are not for `search` [steps]: whole numbers up
-/// to here, less a vertex, are floats.
+/// Points farther than this from the tree's origin in some axis are not for `search` [steps]: whole numbers
+/// up to here, less a vertex, are floats.
 inline constexpr double farthest_point = 16777216; // 2^24
 
 /// The functions for an available instruction set.

@@ -21,10 +21,10 @@ namespace phantom::fdh {
 /// the second (X - U) is known to 2 u (d + E). On an edge: the parameter is off by 4 u |X| / |U|, which moves
 /// the foot along the edge and the distance by its square, and the difference from the foot by 3 u (d + E).
 /// On the face: the computed normal is turned by at most t = 3 u / sin(U, V), which alters the height by
-/// t |X|, and n X is summed to 3 u |X|. The builder puts the vertex opposite the longest edge first, where the
-/// sine is largest; where it is still below needle_sine = 1/8, the triangle has needle_flag. A foot on the
-/// wrong side of a wall is so by no more than t h + 4 u (d + E), where both cases agree to the square of that
-/// over h, or to itself. Together below 32 u (d + E) = float_error (d + E).
+/// t |X|, and n X is summed to 3 u |X|. The builder puts the vertex opposite the longest edge first, where
+/// the sine is largest; where it is still below needle_sine = 1/8, the triangle has needle_flag. A foot on
+/// the wrong side of a wall is so by no more than t h + 4 u (d + E), where both cases agree to the square of
+/// that over h, or to itself. Together below 32 u (d + E) = float_error (d + E).
 template <Isa I>
 struct TriangleDistance {
     using S = Simd<I>;
@@ -87,8 +87,8 @@ struct HullDistance {
     static V excess2(const Node<K>& node, const SearchPoint<K>& point, int k, int lane)
     {
         const V p = S::set(point.projected[k]);
-        const V e = S::max(S::max(S::load(node.low[k] + lane) - p, p - S::load(node.high[k] + lane)),
-                           S::set(0));
+        const V e =
+            S::max(S::max(S::load(node.low[k] + lane) - p, p - S::load(node.high[k] + lane)), S::set(0));
         return e * e;
     }
 
@@ -266,7 +266,8 @@ struct Selection {
         const std::size_t last = c.size - 1;
         std::size_t place = c.size; // none yet
         for (std::size_t i = 0; i < c.size; i += S::width)
-            for (unsigned mask = S::bits(S::less_equal(v, S::load(c.distance2 + i))); mask; mask &= mask - 1) {
+            for (unsigned mask = S::bits(S::less_equal(v, S::load(c.distance2 + i))); mask;
+                 mask &= mask - 1) {
                 const std::size_t at = i + static_cast<unsigned>(__builtin_ctz(mask));
                 if (at <= last && (place > last || c.triangle[at] > c.triangle[place]))
                     place = at;
@@ -635,7 +636,8 @@ struct Conversion {
         for (; i + 2 <= c.size; i += 2) {
             const __m128i triangles = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(c.triangle + i));
             const __m128d who = _mm_castsi128_pd(_mm_unpacklo_epi32(objects, triangles));
-            const __m128 two = _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(c.distance2 + i)));
+            const __m128 two =
+                _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(c.distance2 + i)));
             const __m128d far = _mm_mul_pd(_mm_cvtps_pd(two), steps);
             auto* to = reinterpret_cast<double*>(hits + i);
             _mm_storeu_pd(to, _mm_unpacklo_pd(who, far));
@@ -650,9 +652,8 @@ struct Conversion {
 template <Isa I, int K>
 const SearchKernels<K>& kernels_of()
 {
-    static constexpr SearchKernels<K> table = {&Search<I, K>::run, &Search<I, K>::scan,
-                                               &Search<I, K>::gather, &Selection<I>::select,
-                                               &Conversion<I>::to_hits};
+    static constexpr SearchKernels<K> table = {&Search<I, K>::run, &Search<I, K>::scan, &Search<I, K>::gather,
+                                               &Selection<I>::select, &Conversion<I>::to_hits};
     return table;
 }
 

@@ -62,10 +62,7 @@ struct Simd<Isa::sse2> {
     static Mask less(Float a, Float b) { return _mm_cmplt_ps(a, b); }
     static Mask less_equal(Float a, Float b) { return _mm_cmple_ps(a, b); }
     static Mask both(Mask a, Mask b) { return _mm_and_ps(a, b); }
-    static Float select(Mask m, Float a, Float b)
-    {
-        return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b));
-    }
+    static Float select(Mask m, Float a, Float b) { return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)); }
     static unsigned bits(Mask m) { return static_cast<unsigned>(_mm_movemask_ps(m)); }
     static unsigned signs(const std::uint32_t* p)
     {

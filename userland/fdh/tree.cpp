@@ -7,6 +7,7 @@
 
 #include "fdh/collector.hpp"
 #include "fdh/parallel.hpp"
+#include "fdh/region_search.hpp"
 #include "fdh/tree_impl.hpp"
 
 namespace phantom::fdh {
@@ -39,8 +40,8 @@ template <int K>
 TriangleTree<K> TriangleTree<K>::build(const MeshView& mesh, const BuildOptions& options)
 {
     check_isa(options.isa);
-    return TriangleTree(
-        std::make_shared<const Impl>(build_tree<K>(mesh, thread_count(options.threads), options.isa), options.isa));
+    return TriangleTree(std::make_shared<const Impl>(
+        build_tree<K>(mesh, thread_count(options.threads), options.isa), options.isa));
 }
 
 template <int K>
@@ -61,8 +62,13 @@ template <int K>
 TreeImage TriangleTree<K>::image() const
 {
     const TreeData<K>& data = impl_->data;
-    return {data.grid.origin, data.grid.step, data.longest_edge, data.spread, data.triangles,
-            std::as_bytes(data.nodes), std::as_bytes(data.leaves)};
+    return {data.grid.origin,
+            data.grid.step,
+            data.longest_edge,
+            data.spread,
+            data.triangles,
+            std::as_bytes(data.nodes),
+            std::as_bytes(data.leaves)};
 }
 
 template <int K>
@@ -106,6 +112,22 @@ void TriangleTree<K>::within(const Point& p, double radius, std::vector<Hit>& ou
         return;
     WithinCollector collector(out, radius);
     impl_->collect(p, 0, collector);
+}
+
+template <int K>
+void TriangleTree<K>::along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (valid_segment({from, to}, radius))
+        search_along<K>(impl_->view, impl_->data.grid, {from, to}, radius, 0, out);
+}
+
+template <int K>
+void TriangleTree<K>::in_box(const Box& box, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (valid_box(box))
+        search_box<K>(impl_->view, impl_->data.grid, {}, box, 0, out);
 }
 
 template <int K>

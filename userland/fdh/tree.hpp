@@ -39,9 +39,9 @@ inline constexpr std::size_t image_alignment = 64;
 /// of threads may query it at once. Distances hold for degenerate triangles too (a segment, a point).
 ///
 /// Accuracy. The tree keeps vertices rounded to a grid of its own, fine against the mesh's extent, and
-/// computes in float from there, relative to the query point; from points outside twice the mesh's half extent
-/// in double. Reported distances are off by no more than accuracy(); coverage and the set of hits allow for
-/// that, so what they promise holds for the true mesh.
+/// computes in float from there, relative to the query point; from points outside twice the mesh's half
+/// extent in double. Reported distances are off by no more than accuracy(); coverage and the set of hits
+/// allow for that, so what they promise holds for the true mesh.
 template <int K>
 class TriangleTree {
   public:
@@ -49,8 +49,8 @@ class TriangleTree {
 
     /// Builds by halving along the longest axis (order.hpp). An empty view gives a tree that finds nothing.
     /// Throws std::invalid_argument, naming the triangle, if one refers to a vertex that is not there or
-    /// whose coordinates are not finite or beyond largest_coordinate; if there are 2^31 - 1 triangles or more; or
-    /// if options.isa is not available. Vertices that no triangle uses are not looked at.
+    /// whose coordinates are not finite or beyond largest_coordinate; if there are 2^31 - 1 triangles or
+    /// more; or if options.isa is not available. Vertices that no triangle uses are not looked at.
     static TriangleTree build(const MeshView& mesh, const BuildOptions& options = {});
 
     /// The same triangles after their vertices have moved: leaves and hulls are computed anew, three to four
@@ -58,8 +58,8 @@ class TriangleTree {
     /// other, the more leaves a query visits: see spread(). Throws std::invalid_argument as build() does,
     /// and if the mesh has another number of triangles.
     [[nodiscard]] TriangleTree refitted(const MeshView& mesh, const BuildOptions& options = {}) const;
-    /// Surface of the leaves' boxes over that of their triangles' own boxes, summed over all. Measures how well
-    /// the order suits the mesh: about 0.4 when just built of a smooth mesh; the same if it is scaled or
+    /// Surface of the leaves' boxes over that of their triangles' own boxes, summed over all. Measures how
+    /// well the order suits the mesh: about 0.4 when just built of a smooth mesh; the same if it is scaled or
     /// moved. A query visits about so many more leaves as it has grown.
     [[nodiscard]] double spread() const;
 
@@ -77,9 +77,19 @@ class TriangleTree {
     /// nothing.
     void nearest(const Point& p, std::size_t count, double max_radius, Nearest& out) const;
 
-    /// Every triangle within radius of p (distance <= radius), in no order. Never misses one; may include some
-    /// that are farther, by twice accuracy(p, radius) at most. Invalid input as for nearest().
+    /// Every triangle within radius of p (distance <= radius), in no order. Never misses one; may include
+    /// some that are farther, by twice accuracy(p, radius) at most. Invalid input as for nearest().
     void within(const Point& p, double radius, std::vector<Hit>& out) const;
+
+    /// Every triangle within radius of the segment, in no order: of the way from the tip to where it will be.
+    /// Never misses one; may include some that are farther, by twice accuracy(p, radius) at most, p the end
+    /// for which that is more. Invalid ends or radius find nothing.
+    void along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const;
+
+    /// Every triangle that touches the box, in no order; their distances are given as 0. Never misses one;
+    /// may include some that touch it only when it is widened on every side by twice accuracy(p, 0), p the
+    /// corner for which that is most. A box with low > high or a NaN finds nothing.
+    void in_box(const Box& box, std::vector<Hit>& out) const;
 
     /// Largest difference between a reported distance d from p and the true one [mesh unit]: 1.04e-7 of the
     /// mesh's half extent (the longest half side of its box, rounded up to a power of two), 2e-6 of d and of

@@ -19,7 +19,10 @@ struct TriangleTree<K>::Impl {
     const SearchKernels<K>* kernels;
 
     Impl(TreeData<K> data_, Isa asked)
-        : data(std::move(data_)), isa(resolve_isa(asked)), kernels(&search_kernels<K>(isa)), view(data.view()),
+        : data(std::move(data_)),
+          isa(resolve_isa(asked)),
+          kernels(&search_kernels<K>(isa)),
+          view(data.view()),
           prefetch(data.nodes.size_bytes() + data.leaves.size_bytes() > cached_bytes)
     {
     }
@@ -37,8 +40,8 @@ struct TriangleTree<K>::Impl {
         const Point steps = data.grid.to_steps(p);
         const ErrorBound error = error_from(steps);
         if (near(steps))
-            collector.search(view, *kernels, search_point<K>(steps, data.longest_edge, prefetch), data.grid.step,
-                             object, error);
+            collector.search(view, *kernels, search_point<K>(steps, data.longest_edge, prefetch),
+                             data.grid.step, object, error);
         else
             collector.search_precisely(view, steps, data.grid.step, object, error);
     }

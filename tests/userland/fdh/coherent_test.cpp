@@ -46,7 +46,8 @@ std::vector<Point> walk(double radius, double step, std::size_t strokes, std::mt
 }
 
 template <class K>
-class CoherentTest : public testing::Test {};
+class CoherentTest : public testing::Test {
+};
 using Hulls = testing::Types<std::integral_constant<int, 6>, std::integral_constant<int, 14>,
                              std::integral_constant<int, 18>, std::integral_constant<int, 26>>;
 TYPED_TEST_SUITE(CoherentTest, Hulls);

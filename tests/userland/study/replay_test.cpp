@@ -241,7 +241,8 @@ class RawMachine {
         fdh::Nearest nearest;
         the_tree().nearest(tip_mm, 64, 50.0, nearest);
         device::PatchSet set;
-        builder_.build(nearest.hits, tip_mm, nearest.coverage, set);
+        nearest.sort();
+        builder_.build(nearest, tip_mm, set);
         set.header.id = ++last_id_;
         set.header.patch_count = static_cast<__u32>(set.patches.size());
         set.header.material_count = static_cast<__u32>(set.materials.size());
