@@ -52,7 +52,7 @@ class SetBuilder {
     void build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out);
 
   private:
-    void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out) const;
+    void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out);
     /// False when the set has no room for the face's material or object.
     bool claim(std::uint32_t object, device::PatchSet& out);
     /// Forgets the numbers that claim() gave for these faces.
@@ -73,6 +73,7 @@ class SetBuilder {
     std::uint32_t patches_max_;
     std::vector<std::uint32_t> slot_;                 ///< scratch: face number to index in the set
     std::vector<std::uint32_t> material_slot_;        ///< scratch: scene material to index in the set
+    std::vector<std::uint32_t> claimed_;              ///< scratch: scene material of each one in the set
     std::vector<std::uint32_t> object_slot_;          ///< scratch: scene object to index in the set
     std::vector<std::array<std::uint32_t, 2>> faces_; ///< scratch: (object, face)
     struct NeededRim {

@@ -188,6 +188,43 @@ TEST(SetBuilder, OnlyMaterialsThatAreUsedAreCarriedWithTheirEffects)
     EXPECT_EQ(built.set.materials[0].effects, 0U);
 }
 
+TEST(SetBuilder, EffectsHaveTheirTablesAndTheModuleTakesThem)
+{
+    Built built;
+    scene::Material& left = built.scene.materials[built.scene.objects[0].material];
+    scene::Material& right = built.scene.materials[built.scene.objects[1].material];
+    left.friction = scene::Friction{0.6, 0.4, 2, 10};
+    right.friction = scene::Friction{0.3, 0.2, 1, 0};
+    right.magnet = scene::Magnet{0.25, 0.1};
+    right.texture = scene::Texture{0.05, 2, {0, -1, 0}};
+    Result<device::Device> device = device::Device::open_usermode({.virtual_clock = true});
+    ASSERT_TRUE(device);
+    built.at(between, 100);
+    const phantom_magnet magnet{250'000, 100'000};
+    const phantom_friction first{600'000, 400'000, 2000, 10'000}, second{300'000, 200'000, 1000, 0};
+    const phantom_texture texture{{50'000, 0}, {{0, -500'000, 0}, {0, 0, 0}}};
+    std::vector<std::uint64_t> expected;
+    const auto add = [&expected](const auto& entry) {
+        const std::size_t before = expected.size();
+        expected.resize(before + sizeof entry / sizeof(std::uint64_t));
+        std::memcpy(&expected[before], &entry, sizeof entry);
+    };
+    add(magnet);
+    add(first);
+    add(second);
+    add(texture);
+    EXPECT_EQ(built.set.effect_tables, expected);
+    EXPECT_TRUE(device->submit(built.set));
+    EXPECT_EQ(built.set.header.effects & ~PHANTOM_EFFECT_DAMPING,
+              PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION | PHANTOM_EFFECT_TEXTURE);
+    // Only the first sphere's, where it is alone.
+    built.at({-20.5, 0, 0}, 20);
+    expected.clear();
+    add(first);
+    EXPECT_EQ(built.set.effect_tables, expected);
+    EXPECT_TRUE(device->submit(built.set));
+}
+
 TEST(SetBuilder, CoverageHoldsAgainstBruteForce)
 {
     Built built;
