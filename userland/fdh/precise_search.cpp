@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "fdh/precise_search.hpp"
+#include "fdh/region_hull.hpp"
+#include "fdh/triangle_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,31 +9,6 @@
 namespace phantom::fdh {
 
 namespace {
-
-Point minus(const Point& a, const Point& b)
-{
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Point& a, const Point& b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point cross(const Point& a, const Point& b)
-{
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Point lane_of(const float (&field)[3][lanes], int lane)
-{
-    return {field[0][lane], field[1][lane], field[2][lane]};
-}
-
-/// To the segment from 0 to e, whole numbers; p relative to its start.
-double to_segment(const Point& p, const Point& e)
-{
-    const double t = std::clamp(dot(p, e) / std::max(dot(e, e), 1.0), 0.0, 1.0);
-    const Point r = {p[0] - t * e[0], p[1] - t * e[1], p[2] - t * e[2]};
-    return dot(r, r);
-}
 
 /// Lower bound of the squared distance to one child's hull: as HullDistance (search_kernels.hpp) has it, of
 /// the axes and the cube's diagonals.
@@ -111,15 +88,9 @@ class PreciseSearch {
 
 double precise_distance2(const Leaf& leaf, int lane, const double (&point)[3])
 {
-    const Point u = lane_of(leaf.edge1, lane), v = lane_of(leaf.edge2, lane), w = minus(v, u);
-    const Point p = minus({point[0], point[1], point[2]}, lane_of(leaf.vertex, lane)), q = minus(p, u);
-    const Point n = cross(u, v);
-    const double nn = dot(n, n);
-    if (nn >= 1 && dot(n, cross(u, p)) >= 0 && dot(n, cross(p, v)) >= 0 && dot(n, cross(w, q)) >= 0) {
-        const double height = dot(n, p);
-        return height / nn * height;
-    }
-    return std::min({to_segment(q, w), to_segment(p, u), to_segment(p, v)});
+    const double distance =
+        TriangleFrame(corners_of(leaf, lane)).distance(Point{point[0], point[1], point[2]});
+    return distance * distance;
 }
 
 template <int K>

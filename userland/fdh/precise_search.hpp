@@ -13,9 +13,8 @@ namespace phantom::fdh {
 
 /// Squared distance from a point to one triangle of a leaf [steps²].
 ///
-/// As in TriangleDistance (search_kernels.hpp); with the edges exact and the normal (at most 2^49 square
-/// steps) exact in double, a degenerate triangle is recognised exactly, a needle's plane is its true plane,
-/// and a wall's sign is wrong only within 2^-50 of the distance from it.
+/// By TriangleFrame: three walls, each right to within rounding, would not do. Of a sliver they are so nearly
+/// parallel that all three may seem to hold a point far beyond its tip.
 double precise_distance2(const Leaf& leaf, int lane, const double (&point)[3]);
 
 /// Where a precise search puts what it finds.

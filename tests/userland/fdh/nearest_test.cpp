@@ -4,6 +4,7 @@
 #include <numeric>
 #include <thread>
 
+#include "fdh/vector.hpp"
 #include "oracle.hpp"
 
 namespace phantom::fdh::test {
@@ -69,6 +70,35 @@ TYPED_TEST(NearestTest, DegenerateFacesMatchBruteForce)
 {
     std::mt19937_64 random(5);
     this->check(degenerate_faces(random), 40);
+}
+
+// As thin as a grid can hold: half a square step, millions of steps long. Points in line with them, beyond
+// their tips, are inside two of their walls but for rounding.
+TYPED_TEST(NearestTest, SliversHaveNoLongerTips)
+{
+    constexpr double corner = 8388604;                  // makes the grid's step 1
+    constexpr double f[] = {2178309, 3524578, 5702887}; // Fibonacci numbers: f1 f1 - f0 f2 = 1
+    const Point a = {0, 0, 0}, b = {f[1], f[0], 0}, c = {f[2], f[1], 0};
+    Mesh mesh;
+    mesh.add({-corner, -corner, -corner}, {-corner, -corner, -corner}, {-corner, -corner, -corner});
+    mesh.add({corner, corner, corner}, {corner, corner, corner}, {corner, corner, corner});
+    for (const auto& t : {Corners{a, b, c}, {b, c, a}, {c, a, b}, {a, c, b}, {b, a, c}, {c, b, a}})
+        mesh.add(t[0], t[1], t[2]);
+    const auto tree = TriangleTree<TypeParam::value>::build(mesh.view());
+    std::mt19937_64 random(163);
+    std::uniform_real_distribution<double> beyond(0, 0.4);
+    std::vector<Hit> hits;
+    for (int i = 0; i < 4000; i++) {
+        const double t = i % 2 ? 1 + beyond(random) : -beyond(random);
+        const Point p = {t * f[2], t * f[1], 0};
+        const auto truth = static_cast<double>(true_distance(p, a, b, c));
+        tree.within(p, 1e7, hits);
+        ASSERT_GE(hits.size(), 6u);
+        for (const Hit& hit : hits)
+            if (hit.triangle >= 2) {
+                ASSERT_NEAR(hit.distance, truth, tree.accuracy(p, truth)) << "t = " << t;
+            }
+    }
 }
 
 TYPED_TEST(NearestTest, TiesOnAFlatGridMatchBruteForce)
