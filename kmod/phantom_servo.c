@@ -121,9 +121,11 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		.face_count = copy->face_count,
 		.rim_count = copy->rim_count,
 		.material_count = copy->header.material_count,
+		.effects = copy->header.effect_bytes ? &copy->effects : NULL,
 	};
 
 	phantom_context_submitter(&servo->sets);
+	memcpy(prepare.origin_nm, slot->origin_nm, sizeof(prepare.origin_nm));
 	do {
 		u64 begin = phantom_servo_now(servo);
 		u64 length;
@@ -166,6 +168,9 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 		/* a scene that became empty here is no mere swap */
 		if (before->patch_count && !slot->patch_count)
 			pass->blend_ns = PHANTOM_FADE_NS;
+		/* another feel */
+		if (before->effect_print != slot->effect_print)
+			pass->blend_ns = PHANTOM_FADE_NS;
 		if (phantom_set_reshaped(before, slot))
 			pass->outgoing = before; /* phantom_servo_depart() releases it */
 		else
@@ -173,6 +178,8 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 	}
 	servo->active = slot;
 	servo->warned = false;
+	if (!(slot->effects & PHANTOM_EFFECT_FRICTION))
+		servo->touch.stuck = false;
 	next->set_time_ns = pass->now_ns;
 	next->isa = slot->ops->isa;
 	next->set_id = slot->id;
@@ -223,6 +230,30 @@ static bool phantom_servo_place(struct phantom_servo *servo, const struct phanto
 	       phantom_set_covers(slot, job->tip_nm, 0);
 }
 
+/* What effects remember goes into the job in the set's coordinates, and comes back out of it. */
+static void phantom_servo_give_stick(struct phantom_servo *servo, const struct phantom_pass *pass)
+{
+	struct phantom_float_job *job = &servo->job;
+	struct phantom_touch *touch = &servo->touch;
+
+	job->period_ns = pass->period_ns;
+	job->stick.coefficient_q24 = touch->coefficient_q24;
+	job->stick.held = touch->stuck && phantom_set_relative(servo->active, touch->anchor_nm,
+							       job->stick.anchor_nm);
+}
+
+static void phantom_servo_take_stick(struct phantom_servo *servo)
+{
+	const struct phantom_stick *stick = &servo->job.stick_next;
+	struct phantom_touch *touch = &servo->touch;
+	int axis;
+
+	touch->stuck = stick->held;
+	touch->coefficient_q24 = stick->coefficient_q24;
+	for (axis = 0; axis < 3; axis++)
+		touch->anchor_nm[axis] = servo->active->origin_nm[axis] + stick->anchor_nm[axis];
+}
+
 static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_pass *pass)
 {
 	const struct phantom_slot *slot = servo->active;
@@ -232,7 +263,9 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 
 	if (!slot->patch_count) {
 		touch->inside = false;
-		return;
+		job->inside = 0;
+		if (!(slot->effects & PHANTOM_EFFECTS_SPACE))
+			return;
 	}
 	job->set = slot->floats;
 	job->effects = slot->effects;
@@ -241,6 +274,8 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 	for (axis = 0; axis < 3; axis++)
 		job->velocity_nm_s[axis] =
 			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
+	if (slot->effects & ~PHANTOM_EFFECT_DAMPING)
+		phantom_servo_give_stick(servo, pass);
 	if (touch->carry_nm && touch->valid)
 		phantom_carry(servo);
 	else
@@ -252,6 +287,8 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 	touch->proxy_face = job->inside ? job->proxy_face : PHANTOM_PATCH_NONE;
 	for (axis = 0; axis < 3; axis++)
 		touch->proxy_nm[axis] = slot->origin_nm[axis] + job->proxy_nm[axis];
+	if (slot->effects & PHANTOM_EFFECT_FRICTION)
+		phantom_servo_take_stick(servo);
 	memcpy(touch->normal_q30, job->normal_q30, sizeof(touch->normal_q30));
 	memcpy(pass->target_un, job->force_un, sizeof(pass->target_un));
 	memcpy(pass->normal_q30, job->normal_q30, sizeof(pass->normal_q30));

@@ -52,6 +52,9 @@ struct phantom_touch {
 	s32 normal_q30[3]; /* of the contact there; zero without one */
 	u32 carry_nm; /* the geometry has changed since, by about that much; 0 = it has not */
 	u32 moved_nm; /* and may have moved by that much */
+	bool stuck; /* friction holds a stick point: */
+	u32 coefficient_q24; /* struct phantom_stick */
+	s64 anchor_nm[3];
 	u64 evaluated_ns; /* when */
 };
 

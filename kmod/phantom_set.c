@@ -49,6 +49,8 @@ static int phantom_set_copy_arrays(struct phantom_sets *sets)
 			   header->material_count * sizeof(copy->materials[0])) ||
 	    copy_from_user(copy->objects, u64_to_user_ptr(header->objects),
 			   header->object_count * sizeof(copy->objects[0])) ||
+	    copy_from_user(copy->tables, u64_to_user_ptr(phantom_set_tables(header)),
+			   header->effect_bytes) ||
 	    copy_from_user(copy->patches, u64_to_user_ptr(header->patches), patches))
 		return -EFAULT;
 	return 0;
@@ -65,21 +67,50 @@ static struct phantom_slot *phantom_set_pick(struct phantom_sets *sets)
 	return NULL;
 }
 
-static int phantom_set_reserve(struct phantom_slot *slot, u32 patch_count,
+static int phantom_set_reserve(struct phantom_slot *slot, const struct phantom_set_copy *copy,
 			       const struct phantom_float_ops *ops)
 {
-	u32 capacity = phantom_set_capacity(patch_count);
+	u32 patch_count = copy->header.patch_count;
+	u32 capacity = phantom_set_capacity(patch_count), effect_bytes = 0;
 
-	if (slot->floats && slot->ops == ops && slot->capacity >= patch_count)
+	if (copy->header.effect_bytes)
+		effect_bytes = ops->effect_bytes(&copy->effects, copy->header.material_count);
+	if (slot->floats && slot->ops == ops && slot->capacity >= patch_count &&
+	    slot->effect_room >= effect_bytes)
 		return 0;
 	vfree(slot->floats);
 	WRITE_ONCE(slot->capacity, 0);
+	WRITE_ONCE(slot->effect_room, 0);
 	WRITE_ONCE(slot->ops, ops);
-	slot->floats = vzalloc(ops->set_bytes(capacity));
+	slot->floats = vzalloc(ops->set_bytes(capacity) + effect_bytes);
 	if (!slot->floats)
 		return -ENOMEM;
 	WRITE_ONCE(slot->capacity, capacity);
+	WRITE_ONCE(slot->effect_room, effect_bytes);
 	return 0;
+}
+
+/* FNV-1a, by words. */
+static u64 phantom_print_add(u64 print, u64 word)
+{
+	return (print ^ word) * 1099511628211ULL;
+}
+
+static u64 phantom_set_print(const struct phantom_set_copy *copy)
+{
+	const struct phantom_set *header = &copy->header;
+	u64 print = 14695981039346656037ULL;
+	u32 i;
+
+	if (!(header->effects & ~PHANTOM_EFFECT_DAMPING))
+		return 0;
+	print = phantom_print_add(print, header->effects & ~PHANTOM_EFFECT_DAMPING);
+	for (i = 0; i < header->material_count; i++)
+		print = phantom_print_add(print,
+					  copy->materials[i].effects & ~PHANTOM_EFFECT_DAMPING);
+	for (i = 0; i < header->effect_bytes / sizeof(copy->tables[0]); i++)
+		print = phantom_print_add(print, copy->tables[i]);
+	return print;
 }
 
 static void phantom_set_describe(struct phantom_slot *slot, const struct phantom_set_copy *copy)
@@ -93,6 +124,7 @@ static void phantom_set_describe(struct phantom_slot *slot, const struct phantom
 	slot->radius_nm = min_t(u32, header->radius_nm, PHANTOM_COVERAGE_MAX_NM);
 	slot->patch_count = header->patch_count;
 	slot->effects = header->effects;
+	slot->effect_print = phantom_set_print(copy);
 	slot->level = header->level;
 	slot->level_error_nm = header->level_error_nm;
 	slot->refused = 0;
@@ -128,7 +160,7 @@ struct phantom_slot *phantom_set_fill(struct phantom_sets *sets, const void __us
 	slot = phantom_set_pick(sets);
 	if (!slot)
 		return ERR_PTR(-EAGAIN);
-	error = phantom_set_reserve(slot, copy->header.patch_count, ops);
+	error = phantom_set_reserve(slot, copy, ops);
 	if (error)
 		return ERR_PTR(error);
 	phantom_set_describe(slot, copy);
@@ -167,7 +199,7 @@ size_t phantom_set_bytes(const struct phantom_sets *sets)
 		u32 capacity = READ_ONCE(sets->slot[i].capacity);
 
 		if (ops && capacity)
-			bytes += ops->set_bytes(capacity);
+			bytes += ops->set_bytes(capacity) + READ_ONCE(sets->slot[i].effect_room);
 	}
 	return bytes;
 }

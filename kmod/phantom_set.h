@@ -45,6 +45,7 @@ struct phantom_slot {
 	u32 reach_nm; /* largest contact radius among its materials */
 	u32 patch_count;
 	u32 effects;
+	u64 effect_print; /* of effects and tables, damping aside: the same, or another feel */
 	u32 level;
 	u32 level_error_nm;
 	u32 refused; /* patches that could not be computed */
@@ -54,6 +55,7 @@ struct phantom_slot {
 	const struct phantom_float_ops *ops; /* which prepared `floats`, and alone can use it */
 	struct phantom_float_set *floats;
 	u32 capacity; /* patches that floats has room for, as ops lays them out */
+	u32 effect_room; /* and bytes of tables */
 };
 
 /* The caller's arrays, copied before anything is believed. The submitter's. */
@@ -61,11 +63,13 @@ struct phantom_set_copy {
 	struct phantom_set header;
 	struct phantom_material materials[PHANTOM_MATERIALS_MAX];
 	struct phantom_object objects[PHANTOM_OBJECTS_MAX];
+	u64 tables[PHANTOM_EFFECT_BYTES_MAX / sizeof(u64)]; /* header.effect_bytes of them */
 	struct phantom_patch *patches;
 	u32 capacity; /* of patches */
 	/* by phantom_set_check_arrays() */
 	u32 face_count; /* patches of kind FACE: they come first */
 	u32 rim_count; /* patches of kind RIM: they come last */
+	struct phantom_effects effects; /* the tables */
 };
 
 struct phantom_sets {
@@ -95,12 +99,22 @@ void phantom_set_hand_over(struct phantom_sets *sets, struct phantom_slot *slot)
 /* Forgets the waiting set and the last id. */
 void phantom_set_forget(struct phantom_sets *sets);
 
+/* Where the tables begin in the caller's memory. */
+static inline u64 phantom_set_tables(const struct phantom_set *header)
+{
+	return header->materials + header->material_count * sizeof(struct phantom_material);
+}
+
 /* Memory of slots and copy. Any context; a submission in flight may or may not count. */
 size_t phantom_set_bytes(const struct phantom_sets *sets);
 
 /* phantom_set_check.c: 0 or -EINVAL. Looks at every field of the copy; counts its faces. */
 int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 patches_max);
 int phantom_set_check_arrays(struct phantom_set_copy *copy);
+/* A vector of unit length? */
+bool phantom_check_unit(const s32 vector_q30[3]);
+/* phantom_effects_check.c: the same for the tables; materials are checked before. Finds the tables. */
+int phantom_effects_check(struct phantom_set_copy *copy);
 
 /* ---- servo, wait-free ---------------------------------------------------- */
 

@@ -23,7 +23,7 @@ static bool phantom_check_coordinates(const s32 point_nm[3])
 	return true;
 }
 
-static bool phantom_check_unit(const s32 vector_q30[3])
+bool phantom_check_unit(const s32 vector_q30[3])
 {
 	u64 sum = 0;
 	int axis;
@@ -41,7 +41,7 @@ int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 
 {
 	int axis;
 
-	if (header->flags || header->reserved)
+	if (header->flags || header->effect_bytes > PHANTOM_EFFECT_BYTES_MAX)
 		return -EINVAL;
 	if (header->id <= last_id)
 		return -EINVAL;
@@ -117,7 +117,7 @@ static bool phantom_check_material(const struct phantom_material *material)
 	for (i = 0; i < 4; i++)
 		if (material->reserved[i])
 			return false;
-	if (!material->radius_nm || (material->effects & ~PHANTOM_EFFECTS_KNOWN))
+	if (!material->radius_nm || (material->effects & ~PHANTOM_EFFECTS_SURFACE))
 		return false;
 	return !material->damping_mns_m || (material->effects & PHANTOM_EFFECT_DAMPING);
 }
@@ -173,7 +173,7 @@ int phantom_set_check_arrays(struct phantom_set_copy *copy)
 			return -EINVAL;
 		effects |= copy->materials[i].effects;
 	}
-	if (effects != header->effects)
+	if (effects != (header->effects & ~PHANTOM_EFFECTS_SPACE) || phantom_effects_check(copy))
 		return -EINVAL;
 	for (i = 0; i < header->object_count; i++) {
 		if (!phantom_check_object(&copy->objects[i]))

@@ -78,6 +78,21 @@
  *   the surface itself moved: so far may a surface rise from one set to the next and still be felt
  *   by a tip that touches it or is below it. One that sinks below the tip lets it go.
  *
+ * EFFECTS
+ *   What a surface feels like beyond contact, and what acts in free space. A material names the
+ *   effects of its surface (PHANTOM_EFFECTS_SURFACE), a set itself those of space
+ *   (PHANTOM_EFFECTS_SPACE); set.effects is the union, and the tick runs these and no others. Damping
+ *   has its parameter in the material. Every other effect has a table, which is there only if the
+ *   effect is named. Tables follow the materials in memory, in the order of the effects' bits,
+ *   without gaps, set.effect_bytes in all:
+ *     surface         its struct once for each material that names it, in the materials' order
+ *     CONSTANT        its struct
+ *     VISCOSITY, GUIDE  struct phantom_effect_count, then its struct that many times
+ *   Law, source, energy and limits of each stand in kmod/float/effects/. Surface effects act where
+ *   there is contact, those of space wherever the set covers the tip, which takes no patches. All of
+ *   them fade as contact does; and where a set's effects or tables are not those of the set before
+ *   it, the force goes over to the new ones within PHANTOM_FADE_NS.
+ *
  * POLL
  *   POLLIN    a record can be read, or the end of a run has not yet been read.
  *   POLLPRI   a set is wanted, or a fault came. A set is wanted when the tip gets uncovered or the
@@ -118,7 +133,10 @@
  *   STOP          (none)   IDLE already: nothing to do, returns 0
  *   SUBMIT_SET    EINVAL   counts over the limits, an index out of range, id 0 or not larger
  *                          than the last one since open(), unknown flag, effect or kind, effects
- *                          that are not the union of the materials', damping without its effect,
+ *                          that are not the union of the materials' and those of space, a space
+ *                          effect in a material, damping without its effect, effect_bytes that
+ *                          is not the length of the tables the effects call for, a parameter
+ *                          beyond what its struct says,
  *                          a normal that is not of unit length to 2^-10, a pose that is not the
  *                          identity (v1), a face after a fan patch, a face or fan after a
  *                          rim, a fan or rim whose corners do not coincide as its kind says, or
@@ -127,8 +145,8 @@
  *                          reserved not zero, radius 0 in a material, vertices or centre
  *                          beyond +-1 m of the origin, the origin beyond
  *                          PHANTOM_POSITION_MAX_NM
- *                 ENOMEM   no memory (the first sets after open or a change of arithmetic only;
- *                          slots are reused). The set in use stays in use
+ *                 ENOMEM   no memory (the first sets after open, after a change of arithmetic or
+ *                          with longer tables only; slots are reused). The set in use stays
  *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
  *                 EINVAL   beyond PHANTOM_POSITION_MAX_NM, reserved not zero
@@ -191,9 +209,33 @@
 /* patches of kind RIM, and patch.surface; without it that must be 0 */
 #define PHANTOM_FEATURE_RIMS (1ULL << 11)
 
-/* ---- effects (material.effects, set.effects) ----------------------------- */
+/* ---- effects (material.effects, set.effects): EFFECTS above --------------- */
 #define PHANTOM_EFFECT_DAMPING (1U << 0) /* normal damping; never pulls */
-#define PHANTOM_EFFECTS_KNOWN PHANTOM_EFFECT_DAMPING
+#define PHANTOM_EFFECT_MAGNET (1U << 1) /* struct phantom_magnet */
+#define PHANTOM_EFFECT_FRICTION (1U << 2) /* struct phantom_friction */
+#define PHANTOM_EFFECT_TEXTURE (1U << 3) /* struct phantom_texture */
+#define PHANTOM_EFFECT_CONSTANT (1U << 16) /* struct phantom_constant */
+#define PHANTOM_EFFECT_VISCOSITY (1U << 17) /* struct phantom_viscosity */
+#define PHANTOM_EFFECT_GUIDE (1U << 18) /* struct phantom_guide */
+#define PHANTOM_EFFECTS_SURFACE                                                                    \
+	(PHANTOM_EFFECT_DAMPING | PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION |                \
+	 PHANTOM_EFFECT_TEXTURE)
+#define PHANTOM_EFFECTS_SPACE                                                                      \
+	(PHANTOM_EFFECT_CONSTANT | PHANTOM_EFFECT_VISCOSITY | PHANTOM_EFFECT_GUIDE)
+#define PHANTOM_EFFECTS_KNOWN (PHANTOM_EFFECTS_SURFACE | PHANTOM_EFFECTS_SPACE)
+
+#define PHANTOM_EFFECT_BYTES_MAX 4096 /* of a set's tables */
+#define PHANTOM_REGIONS_MAX 8 /* in each of the tables VISCOSITY and GUIDE */
+#define PHANTOM_EFFECT_FORCE_MAX_UN 100000000 /* 100 N */
+#define PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM 100000 /* 100 N/mm */
+#define PHANTOM_EFFECT_REACH_MAX_NM 4000000000LL /* from a set's origin to a place, per axis */
+#define PHANTOM_FRICTION_MAX_PPM 4000000 /* coefficient 4 */
+#define PHANTOM_FRICTION_SPEED_MAX_UM_S 1000000
+#define PHANTOM_WAVE_MAX_PER_KM 100000000 /* 10 um from crest to crest, per axis */
+#define PHANTOM_WAVE_SLOPE_MAX 159154943091LL /* 1e12 / (2 pi): a slope of 1 */
+#define PHANTOM_VISCOSITY_MAX_MNS_M 20000 /* 20 N s/m: stable at 1 kHz from 20 g on */
+#define PHANTOM_DRAG_MAX_MNS2_M2 1000000
+#define PHANTOM_BORDER_MIN_NM 100000 /* 0.1 mm */
 
 /* ---- model (CONTACT: contact, combination, proxy, arithmetic) ------------ */
 #define PHANTOM_MODEL_OFF 0 /* the tick runs, the force is zero */
@@ -334,8 +376,70 @@ struct phantom_material {
 	__u32 stiffness_mn_mm; /* k */
 	__u32 radius_nm; /* R, contact radius; > 0 */
 	__u32 damping_mns_m; /* PHANTOM_EFFECT_DAMPING; else 0 */
-	__u32 effects; /* PHANTOM_EFFECT_... this material names */
+	__u32 effects; /* PHANTOM_EFFECTS_SURFACE that this material names */
 	__u32 reserved[4];
+};
+
+/*
+ * Tables of surface effects. PHANTOM_EFFECT_MAGNET: the contact radius is how far the magnet reaches,
+ * its first range_nm pull towards the surface, with force_un at most; the rest pushes.
+ */
+struct phantom_magnet {
+	__u32 range_nm; /* > 0, below the material's radius_nm */
+	__u32 force_un; /* 0 ... PHANTOM_EFFECT_FORCE_MAX_UN */
+};
+
+/* PHANTOM_EFFECT_FRICTION */
+struct phantom_friction {
+	__u32 static_ppm; /* coefficient, dynamic_ppm ... PHANTOM_FRICTION_MAX_PPM */
+	__u32 dynamic_ppm; /* while it slides */
+	__u32 stiffness_mn_mm; /* of the spring to the stick point, 1 ... _STIFFNESS_MAX_MN_MM */
+	__u32 stribeck_um_s; /* half way from static to dynamic; 0 = no Stribeck curve. Max _SPEED_MAX */
+};
+
+/*
+ * PHANTOM_EFFECT_TEXTURE: two gratings, added. A grating is a wave in the scene's space, felt where the
+ * surface cuts it: amplitude_nm sin(2 pi wave . position). Each amplitude_nm times the sum of its
+ * |wave_per_km|, both added up, is at most PHANTOM_WAVE_SLOPE_MAX.
+ */
+struct phantom_texture {
+	__u32 amplitude_nm[2]; /* 0 = no such grating; its wave is then zero */
+	__s32 wave_per_km[2][3]; /* crests per km along the axes: 1e6 = 1 mm apart */
+};
+
+/* Tables of space effects. Places are absolute, and near the set's origin: _REACH_MAX_NM. */
+struct phantom_effect_count {
+	__u32 count; /* 1 ... PHANTOM_REGIONS_MAX */
+	__u32 reserved;
+};
+
+/* PHANTOM_EFFECT_CONSTANT: gravity, wind. */
+struct phantom_constant {
+	__s32 force_un[3]; /* each at most PHANTOM_EFFECT_FORCE_MAX_UN */
+	__u32 reserved;
+};
+
+/* PHANTOM_EFFECT_VISCOSITY: in a ball, full within radius_nm - border_nm; or everywhere. */
+struct phantom_viscosity {
+	__s64 centre_nm[3]; /* 0 0 0 if everywhere */
+	__u32 radius_nm; /* 0 = everywhere */
+	__u32 border_nm; /* PHANTOM_BORDER_MIN_NM ... radius_nm; 0 if everywhere */
+	__u32 viscosity_mns_m; /* force against velocity, at most PHANTOM_VISCOSITY_MAX_MNS_M */
+	__u32 drag_mns2_m2; /* force against its square, at most PHANTOM_DRAG_MAX_MNS2_M2 */
+};
+
+/* PHANTOM_EFFECT_GUIDE: a spring to a point, a line or a plane. */
+#define PHANTOM_GUIDE_POINT 0
+#define PHANTOM_GUIDE_LINE 1
+#define PHANTOM_GUIDE_PLANE 2
+struct phantom_guide {
+	__s64 point_nm[3]; /* of the line, of the plane */
+	__s32 direction_q30[3]; /* unit: along the line, across the plane; 0 0 0 for a point */
+	__u32 kind; /* PHANTOM_GUIDE_... */
+	__u32 stiffness_mn_mm; /* 1 ... PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM */
+	__u32 force_un; /* the most it pulls, 1 ... PHANTOM_EFFECT_FORCE_MAX_UN */
+	__u32 reach_nm; /* it lets go over the last quarter of that distance; 0 = never */
+	__u32 reserved;
 };
 
 /* Where an object is. v1: rotation (1,0,0,0), all else zero but number and revision. */
@@ -358,13 +462,13 @@ struct phantom_set {
 	__u32 patch_count;
 	__u32 material_count;
 	__u32 object_count;
-	__u32 effects; /* union of the materials' effects, exactly */
+	__u32 effects; /* union of the materials' effects, exactly, and those of space */
 	__u32 level; /* of detail; 0 is the mesh itself; another one crossfades */
 	__u32 level_error_nm; /* how far that level lies from the mesh */
 	__u32 flags; /* 0 */
-	__u32 reserved;
+	__u32 effect_bytes; /* of the effects' tables, behind the materials */
 	__u64 patches; /* struct phantom_patch[patch_count] */
-	__u64 materials; /* struct phantom_material[material_count] */
+	__u64 materials; /* struct phantom_material[material_count], then the tables */
 	__u64 objects; /* struct phantom_object[object_count] */
 };
 

@@ -20,7 +20,7 @@ struct contact_force {
 	struct real3 normal; /* unit; 0 without contact */
 	real damping; /* of the materials touched, weighted by force, N per mm/s */
 	real deepest; /* least height of a contact, mm; the patch: */
-	u32 deepest_patch;
+	u32 deepest_patch; /* inside: V's */
 	u32 contacts;
 	u32 folded;
 };

@@ -285,6 +285,7 @@ static inline void penetration_force(const struct phantom_float_job *job, u32 pa
 			       nm_way(job->tip_nm, job->proxy_nm));
 	out->force = real3_scale(out->force, material->stiffness);
 	out->damping = material->damping;
+	out->deepest_patch = patch;
 	out->contacts = 1;
 	rim_fade_held(job->set, patch, job->proxy_nm, out);
 }

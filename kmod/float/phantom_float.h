@@ -32,11 +32,29 @@ struct phantom_float_set;
 /* Patches evaluated by one call of a bounded tick in the kernel. */
 #define PHANTOM_FLOAT_TICK_MAX PHANTOM_PATCHES_MAX
 
+/*
+ * A validated set's effect tables, as they lie in the submitter's copy; a table is NULL unless the
+ * mask names its effect. Surface effects: an entry for each material that names them.
+ */
+struct phantom_effects {
+	u32 mask; /* set.effects */
+	const struct phantom_magnet *magnet;
+	const struct phantom_friction *friction;
+	const struct phantom_texture *texture;
+	const struct phantom_constant *constant;
+	const struct phantom_viscosity *viscosity;
+	const struct phantom_guide *guide;
+	u32 viscosity_count;
+	u32 guide_count;
+};
+
 /* Conversion of a validated set, in pieces; first = 0 initialises the header and materials. */
 struct phantom_float_prepare {
 	struct phantom_float_set *set;
 	const struct phantom_patch *patches; /* the whole array */
 	const struct phantom_material *materials;
+	const struct phantom_effects *effects; /* NULL: the set has no tables */
+	s64 origin_nm[3]; /* of the set; read only for the tables */
 	u32 patch_count;
 	u32 face_count; /* the first of them; fans (PHANTOM_PATCH_EDGE, _CORNER) follow */
 	u32 rim_count; /* the last of them (PHANTOM_PATCH_RIM) */
@@ -44,6 +62,13 @@ struct phantom_float_prepare {
 	u32 first; /* this piece: patches first ... first + count - 1; first is a multiple of 16 */
 	u32 count; /* <= PHANTOM_FLOAT_PREPARE_MAX */
 	u32 refused; /* out, added to: patches that cannot be computed (zero area, ...) */
+};
+
+/* What friction remembers from tick to tick: effects/friction.h. */
+struct phantom_stick {
+	u32 held; /* 0: no contact, what follows means nothing */
+	u32 coefficient_q24; /* that holds the stick point now */
+	s32 anchor_nm[3]; /* the stick point */
 };
 
 /*
@@ -66,6 +91,9 @@ struct phantom_float_job {
 	u32 inside;
 	s32 proxy_nm[3]; /* V while inside */
 	u32 proxy_face; /* phantom_patch.face that V lies on, or PHANTOM_PATCH_NONE */
+	/* effects only: in, and what it is after this tick; a tick may be tried more than once */
+	u32 period_ns;
+	struct phantom_stick stick, stick_next;
 	/* out */
 	s32 force_un[3];
 	s32 normal_q30[3]; /* of the contact; 0 0 0 without one */
@@ -81,6 +109,8 @@ struct phantom_float_ops {
 	bool integer; /* touches no float register: called outside sections too */
 	/* Bytes of a set of that many patches (round up to PHANTOM_FLOAT_SET_ALIGN inside). */
 	size_t (*set_bytes)(u32 patch_count);
+	/* Bytes that the tables take behind those. */
+	size_t (*effect_bytes)(const struct phantom_effects *effects, u32 material_count);
 	void (*prepare)(struct phantom_float_prepare *prepare);
 	/*
 	 * True: not yet done, call again with the job as it is; another section may begin in

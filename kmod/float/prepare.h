@@ -9,6 +9,7 @@
 #define PHANTOM_FLOAT_PREPARE_H
 
 #include "block.h"
+#include "effects/table.h"
 #include "wide3.h"
 
 /*
@@ -438,6 +439,8 @@ static inline void prepare_header(const struct phantom_float_prepare *prepare)
 		material->damping = damped ? real_scaled(in->damping_mns_m, WIDE(1e-6)) : 0;
 		set->radius = real_max(set->radius, material->radius);
 	}
+	if (prepare->effects)
+		effects_prepare(prepare);
 }
 
 /* The same fan over an edge, begun with the corner that stands alone: x1 = x2. */

@@ -16,7 +16,8 @@
 #include "crossing.h"
 #include "penetration.h"
 #include "constrained.h"
-#include "effects/damping.h"
+#include "effects/apply.h"
+#include "effects/weigh.h"
 
 /* What a tick's first piece may cost beside the shell: the path against every patch, twice. */
 #define SECTION_COST_PATH 800U /* of a block */
@@ -71,9 +72,8 @@ static inline void section_sink(struct phantom_float_job *job, const struct cont
 /* Effects and the way back to integers. */
 static inline void section_finish(struct phantom_float_job *job, struct contact_force *contact)
 {
-	if ((job->effects & PHANTOM_EFFECT_DAMPING) && contact->damping > 0)
-		contact->force = damping_apply(contact->force, contact->normal, contact->damping,
-					       job->velocity_nm_s);
+	if (__builtin_expect(job->effects != 0, 0))
+		effects_apply(job, contact);
 	if (!real_finite(contact->force.x) || !real_finite(contact->force.y) ||
 	    !real_finite(contact->force.z) || !real_finite(contact->normal.x) ||
 	    !real_finite(contact->normal.y) || !real_finite(contact->normal.z)) {
@@ -105,13 +105,17 @@ static bool section_tick(struct phantom_float_job *job)
 			return false;
 		}
 	}
-	while (state->phase != SHELL_DONE) {
+	while (state->phase < SHELL_DONE) {
 		job->more = spent >= SHELL_WORK;
 		if (job->more)
 			return true;
 		spent += shell_piece(job, state);
 	}
 	job->more = 0;
+	if (__builtin_expect(job->effects != 0, 0) && weigh_more(job, state, spent)) {
+		job->more = 1;
+		return true;
+	}
 	section_sink(job, &state->out);
 	section_finish(job, &state->out);
 	return false;
@@ -123,6 +127,7 @@ const struct phantom_float_ops PHANTOM_SECTION_OPS = {
 	.isa = PHANTOM_SECTION_ISA,
 	.integer = PHANTOM_SECTION_INTEGER,
 	.set_bytes = section_set_bytes,
+	.effect_bytes = section_effect_bytes,
 	.prepare = section_prepare,
 	.tick = section_tick,
 };

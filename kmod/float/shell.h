@@ -43,6 +43,7 @@
 #define SHELL_OVERLAP 2U
 #define SHELL_SUM 3U
 #define SHELL_DONE 4U
+#define SHELL_WEIGHED 5U /* effects/weigh.h */
 
 /* Between two sections of a tick; in the set's scratch. */
 struct shell_state {

@@ -12,6 +12,7 @@ static int border_copy(struct phantom_set_copy* copy)
                        header->material_count * sizeof(copy->materials[0])) ||
         copy_from_user(copy->objects, u64_to_user_ptr(header->objects),
                        header->object_count * sizeof(copy->objects[0])) ||
+        copy_from_user(copy->tables, u64_to_user_ptr(phantom_set_tables(header)), header->effect_bytes) ||
         (header->patch_count && u64_to_user_ptr(header->patches) == NULL))
         return -EFAULT;
     copy->patches = u64_to_user_ptr(header->patches);
@@ -38,6 +39,7 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
     out->radius_nm = min_t(u32, set->radius_nm, PHANTOM_COVERAGE_MAX_NM);
     out->face_count = copy.face_count;
     out->rim_count = copy.rim_count;
+    out->effects = set->effect_bytes ? &copy.effects : NULL;
     out->reach_nm = 0;
     for (i = 0; i < set->material_count; i++)
         out->reach_nm = max_t(u32, out->reach_nm, copy.materials[i].radius_nm);

@@ -23,6 +23,7 @@ struct border_set {
     uint32_t reach_nm;
     uint32_t face_count;
     uint32_t rim_count;
+    const struct phantom_effects* effects; /* until the next check; NULL: no tables */
 };
 
 /* 0, or the negative errno with which SUBMIT_SET refuses it after a set with that id. */

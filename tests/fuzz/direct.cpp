@@ -36,8 +36,10 @@ using Memory = std::unique_ptr<void, Free>;
 /// What bounds the force of a set, in N and mm.
 struct Bounds {
     double stiffness = 0, radius = 0, damping = 0, product = 0;
-    double rounding = 0;       ///< rounding_mm() of the set, or more
-    Point least{}, greatest{}; ///< of the vertices and the origin, nm
+    double factor = 1;             ///< of contact, by what plays on its surface
+    double added = 0, viscous = 0; ///< N, and N per mm/s, beside contact
+    double rounding = 0;           ///< rounding_mm() of the set, or more
+    Point least{}, greatest{};     ///< of the vertices and the origin, nm
 
     Bounds() = default;
     Bounds(const phantom_material* materials, std::uint32_t count, const phantom_patch* patches,
@@ -66,16 +68,36 @@ struct Bounds {
         rounding = 1e-6 * (1 + longest + radius);
     }
 
+    /// What effects may add: their headers.
+    void feel(const phantom_effects& effects)
+    {
+        constexpr double still_mm = 4e-6; // stick points are in whole nm
+        if (effects.magnet)
+            added += PHANTOM_EFFECT_FORCE_MAX_UN * 1e-6;
+        if (effects.friction) {
+            factor += PHANTOM_FRICTION_MAX_PPM * 1e-6;
+            added += PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM * 1e-3 * still_mm;
+        }
+        if (effects.texture)
+            factor += 1.5 * std::sqrt(2.25 + 1);
+        if (effects.constant)
+            added += norm(effects.constant->force_un) * 1e-6;
+        if (effects.viscosity)
+            viscous += PHANTOM_VISCOSITY_MAX_MNS_M * 1e-6;
+        for (std::uint32_t i = 0; i < effects.guide_count; ++i)
+            added += effects.guide[i].force_un * 1e-6;
+    }
+
+    static double norm(const std::int32_t v[3])
+    {
+        return std::hypot(double(v[0]), double(v[1]), double(v[2]));
+    }
+
     static double distance(const std::int32_t a[3], const std::int32_t b[3])
     {
         return 1e-6 * std::hypot(double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]);
     }
 };
-
-double norm(const std::int32_t v[3])
-{
-    return std::hypot(double(v[0]), double(v[1]), double(v[2]));
-}
 
 /// One section: its layout of the set, and its tip.
 class Section {
@@ -101,14 +123,15 @@ class Section {
     phantom_float_job job_{};
     std::uint32_t refused_ = 0;
     std::uint32_t effects_ = 0;
-    bool valid_ = false, inside_ = false;
-    Point previous_{}, proxy_{};
+    bool valid_ = false, inside_ = false, stuck_ = false;
+    Point previous_{}, proxy_{}, anchor_{};
+    std::uint32_t coefficient_q24_ = 0;
     std::uint32_t proxy_face_ = PHANTOM_PATCH_NONE;
 };
 
 void Section::forget()
 {
-    valid_ = inside_ = false;
+    valid_ = inside_ = stuck_ = false;
     proxy_face_ = PHANTOM_PATCH_NONE;
 }
 
@@ -119,11 +142,18 @@ void Section::take(const phantom_set& set, const border_set& border)
     bounds_ = Bounds(materials, set.material_count, patches, set.patch_count);
     border_ = border;
     effects_ = set.effects;
+    stuck_ = stuck_ && effects_ & PHANTOM_EFFECT_FRICTION;
+    std::size_t bytes = ops_->set_bytes(set.patch_count);
+    if (border.effects) {
+        bounds_.feel(*border.effects);
+        bytes += ops_->effect_bytes(border.effects, set.material_count);
+    }
     // exactly as long as the section asks for: what it touches beyond is found
-    memory_.reset(std::aligned_alloc(PHANTOM_FLOAT_SET_ALIGN, ops_->set_bytes(set.patch_count)));
-    if (!memory_)
+    void* memory = nullptr;
+    if (posix_memalign(&memory, PHANTOM_FLOAT_SET_ALIGN, bytes))
         throw std::bad_alloc();
-    std::memset(memory_.get(), 0xa5, ops_->set_bytes(set.patch_count));
+    memory_.reset(memory);
+    std::memset(memory_.get(), 0xa5, bytes);
     phantom_float_prepare prepare{};
     prepare.set = static_cast<phantom_float_set*>(memory_.get());
     prepare.patches = patches;
@@ -132,6 +162,8 @@ void Section::take(const phantom_set& set, const border_set& border)
     prepare.face_count = border.face_count;
     prepare.rim_count = border.rim_count;
     prepare.material_count = set.material_count;
+    prepare.effects = border.effects;
+    std::copy_n(set.origin_nm, 3, prepare.origin_nm);
     do {
         prepare.count = std::min<std::uint32_t>(set.patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);
         ops_->prepare(&prepare);
@@ -166,6 +198,9 @@ bool Section::tick(const Point& tip, const phantom_model& model, const std::int3
     job_.set = static_cast<const phantom_float_set*>(memory_.get());
     job_.model = model;
     job_.effects = effects_;
+    job_.period_ns = 1'000'000;
+    job_.stick.coefficient_q24 = coefficient_q24_;
+    job_.stick.held = stuck_ && border_relative(&border_, anchor_.data(), job_.stick.anchor_nm);
     std::copy_n(velocity_nm_s, 3, job_.velocity_nm_s);
     std::copy_n(border_.centre_nm, 3, job_.centre_nm);
     constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
@@ -183,12 +218,16 @@ bool Section::tick(const Point& tip, const phantom_model& model, const std::int3
     previous_ = tip;
     inside_ = job_.inside != 0;
     proxy_face_ = inside_ ? job_.proxy_face : PHANTOM_PATCH_NONE;
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    stuck_ = effects_ & PHANTOM_EFFECT_FRICTION && job_.stick_next.held;
+    coefficient_q24_ = job_.stick_next.coefficient_q24;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         proxy_[axis] = border_.origin_nm[axis] + job_.proxy_nm[axis];
+        anchor_[axis] = border_.origin_nm[axis] + job_.stick_next.anchor_nm[axis];
+    }
     return true;
 }
 
-/// CONTACT: |F| <= k (R + depth), and what damping adds to it.
+/// CONTACT: |F| <= k (R + depth), and what effects add to it.
 void Section::check() const
 {
     must(!job_.invalid, "the force of an accepted set is no number");
@@ -196,19 +235,21 @@ void Section::check() const
     must(job_.more == 0, "a tick that is done wants more");
     const double depth = job_.inside ? Bounds::distance(job_.proxy_nm, job_.tip_nm) : 0;
     double most = bounds_.product + bounds_.stiffness * (depth + bounds_.rounding);
+    const double speed_mm_s = Bounds::norm(job_.velocity_nm_s) * 1e-6;
     if (job_.effects & PHANTOM_EFFECT_DAMPING)
-        most += bounds_.damping * norm(job_.velocity_nm_s) * 1e-6;
+        most += bounds_.damping * speed_mm_s;
+    most = most * bounds_.factor + bounds_.added + bounds_.viscous * speed_mm_s;
     // saturated, a component is at the end of its range, and the force was larger
-    must(norm(job_.force_un) <= most * (1 + relative_tolerance) * 1e6 + absolute_tolerance_un,
+    must(Bounds::norm(job_.force_un) <= most * (1 + relative_tolerance) * 1e6 + absolute_tolerance_un,
          "the force is larger than k (R + depth)");
     for (const std::int32_t component : job_.force_un)
         must(job_.saturated || (component != std::numeric_limits<std::int32_t>::max() &&
                                 component != std::numeric_limits<std::int32_t>::min()),
              "a force at the end of its range is not counted as saturated");
-    must(norm(job_.normal_q30) <= PHANTOM_Q30_ONE * (1 + relative_tolerance),
+    must(Bounds::norm(job_.normal_q30) <= PHANTOM_Q30_ONE * (1 + relative_tolerance),
          "the contact's normal is longer than 1");
-    if (!job_.contacts && !job_.inside)
-        must(norm(job_.force_un) == 0, "there is a force without a contact");
+    if (!job_.contacts && !job_.inside && !(job_.effects & PHANTOM_EFFECTS_SPACE))
+        must(Bounds::norm(job_.force_un) == 0, "there is a force without a contact");
 }
 
 class Direct final : public Subject {

@@ -176,9 +176,12 @@ void Script::step()
     case Operation::Shape:
         last_ = add_shape(in_, ruler_, set_);
         break;
-    case Operation::Material:
-        set_.material(read_material(in_));
+    case Operation::Material: {
+        std::uint8_t feel = 0;
+        const phantom_material material = read_material(in_, feel);
+        set_.material(material, feel);
         break;
+    }
     case Operation::Object: {
         phantom_object object{};
         object.object = in_.byte();

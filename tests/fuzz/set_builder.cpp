@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "feel.hpp"
+
 namespace phantom::fuzz {
 
 namespace {
@@ -72,6 +74,7 @@ void SetBuilder::clear()
     material.stiffness_mn_mm = 1000;
     material.radius_nm = 2'000'000;
     materials_ = {material};
+    feels_ = {0};
     phantom_object object{};
     object.rotation_q30[0] = PHANTOM_Q30_ONE;
     objects_ = {object};
@@ -159,7 +162,7 @@ void SetBuilder::end_surface()
     }
 }
 
-void SetBuilder::material(const phantom_material& material)
+void SetBuilder::material(const phantom_material& material, std::uint8_t feel)
 {
     material_ = std::uint32_t(materials_.size());
     if (faces_.empty() && fans_.empty() && materials_.size() == 1)
@@ -170,6 +173,8 @@ void SetBuilder::material(const phantom_material& material)
         materials_.push_back(material);
     else
         materials_[material_] = material;
+    feels_.resize(materials_.size());
+    feels_[material_] = feel;
 }
 
 void SetBuilder::object(const phantom_object& object)
@@ -267,11 +272,17 @@ phantom_set& SetBuilder::request(std::uint64_t id)
     header_.object_count = std::uint32_t(objects_.size());
     for (const phantom_material& material : materials_)
         header_.effects |= material.effects;
+    for (const std::uint8_t feel : feels_)
+        header_.effects |= space_effects(feel);
     sent_patches_ = {};
     const auto fans = std::copy(faces_.begin(), faces_.end(), sent_patches_.begin());
     std::copy(rims_.begin(), rims_.end(), std::copy(fans_.begin(), fans_.end(), fans));
     sent_materials_ = {};
     std::copy(materials_.begin(), materials_.end(), sent_materials_.begin());
+    const std::vector<std::uint8_t> tables = effect_tables(materials_, feels_, header_.origin_nm);
+    header_.effect_bytes = std::uint32_t(tables.size());
+    if (!tables.empty())
+        std::memcpy(sent_materials_.data() + materials_.size(), tables.data(), tables.size());
     sent_objects_ = {};
     std::copy(objects_.begin(), objects_.end(), sent_objects_.begin());
     header_.patches = reinterpret_cast<std::uintptr_t>(sent_patches_.data());
@@ -292,7 +303,9 @@ void SetBuilder::spoil(Part part, std::uint32_t word, std::uint32_t value)
         write(&header_, word % header_words);
         break;
     case Part::Material:
-        write(sent_materials_.data(), word % (materials_.size() * sizeof(phantom_material) / 4));
+        // the tables behind them too
+        write(sent_materials_.data(),
+              word % ((materials_.size() * sizeof(phantom_material) + header_.effect_bytes) / 4));
         break;
     case Part::Object:
         write(sent_objects_.data(), word % (objects_.size() * sizeof(phantom_object) / 4));

@@ -39,8 +39,8 @@ class SetBuilder {
     void fan(const std::array<Point, 3>& corner, const std::array<Direction, 3>& normal);
     /// The faces so far are one surface; rims where it is open, as many as there is room for.
     void end_surface();
-    /// Faces added from now on are of this material or object. The 17th is the first again.
-    void material(const phantom_material& material);
+    /// Faces added from now on are of this material or object. The 17th is the first again. feel: feel.hpp
+    void material(const phantom_material& material, std::uint8_t feel);
     void object(const phantom_object& object);
     void cover(const Point& centre, std::uint32_t radius_nm);
     void origin(const Point& origin) { origin_ = origin; }
@@ -71,6 +71,7 @@ class SetBuilder {
 
     std::vector<phantom_patch> faces_, fans_, rims_;
     std::vector<phantom_material> materials_;
+    std::vector<std::uint8_t> feels_; ///< of each material
     std::vector<phantom_object> objects_;
     std::map<Point, std::uint32_t> numbers_;
     std::uint32_t next_number_ = 0, next_face_ = 0, material_ = 0, object_ = 0;
@@ -80,7 +81,10 @@ class SetBuilder {
 
     phantom_set header_{};
     std::array<phantom_patch, patches_max> sent_patches_{};
-    std::array<phantom_material, PHANTOM_MATERIALS_MAX> sent_materials_{};
+    /// As many as a spoiled header may ask for, and the tables behind them.
+    static constexpr std::size_t sent_materials_max =
+        PHANTOM_MATERIALS_MAX + PHANTOM_EFFECT_BYTES_MAX / sizeof(phantom_material);
+    std::array<phantom_material, sent_materials_max> sent_materials_{};
     std::array<phantom_object, PHANTOM_OBJECTS_MAX> sent_objects_{};
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "feel.hpp"
+
 namespace phantom::fuzz {
 
 namespace {
@@ -262,14 +264,16 @@ Range add_shape(Bytes& in, const Ruler& ruler, SetBuilder& to)
     return {begin, to.face_count()};
 }
 
-phantom_material read_material(Bytes& in)
+phantom_material read_material(Bytes& in, std::uint8_t& feel)
 {
     phantom_material material{};
     material.stiffness_mn_mm = logarithmic(in.byte(), 1) - 1;
     material.radius_nm = logarithmic(in.byte(), 1);
     const std::uint8_t damping = in.byte();
     material.damping_mns_m = damping ? logarithmic(damping, 1) : 0;
-    material.effects = damping || in.byte() & 1 ? PHANTOM_EFFECT_DAMPING : 0;
+    feel = damping ? 0 : in.byte();
+    material.effects = damping || feel & 1 ? PHANTOM_EFFECT_DAMPING : 0;
+    material.effects |= surface_effects(feel, material.radius_nm);
     return material;
 }
 

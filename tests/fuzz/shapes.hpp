@@ -22,7 +22,8 @@ constexpr std::uint32_t shape_kinds = 7;
 /// In place of a kind: the faces so far end at rims.
 constexpr std::uint8_t shape_rims = 255;
 
-/// Four bytes: stiffness, radius and damping over their whole range, on a logarithmic scale.
-phantom_material read_material(Bytes& in);
+/// Three bytes: stiffness, radius and damping over their whole range, on a logarithmic scale; without
+/// damping a fourth, which says what else it feels like (feel.hpp).
+phantom_material read_material(Bytes& in, std::uint8_t& feel);
 
 } // namespace phantom::fuzz

@@ -2,6 +2,7 @@
 // A machine, its files and sets to feed it, for the tests of the module in user mode.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -43,6 +44,8 @@ struct Plane {
     std::vector<phantom_patch> patches;
     std::vector<phantom_material> materials;
     std::vector<phantom_object> objects;
+    std::vector<std::uint64_t> tables; ///< of effects, sent behind the materials
+    std::vector<std::uint64_t> sent;   ///< materials and tables, as set() left them
 
     /// Corners at +-half_nm round (0, 0, height_nm), all in world coordinates; origin where the caller likes.
     explicit Plane(std::uint64_t id, std::int32_t half_nm = 50'000'000, std::int32_t radius_nm = 40'000'000,
@@ -80,13 +83,29 @@ struct Plane {
         objects.push_back(object);
     }
 
+    /// The next table, or the next entry of one.
+    template <class T>
+    void add_table(const T& entry)
+    {
+        static_assert(sizeof(T) % sizeof(tables[0]) == 0);
+        tables.resize(tables.size() + sizeof(T) / sizeof(tables[0]));
+        std::memcpy(&tables[tables.size() - sizeof(T) / sizeof(tables[0])], &entry, sizeof(T));
+    }
+
     phantom_set& set()
     {
         header.patch_count = std::uint32_t(patches.size());
         header.material_count = std::uint32_t(materials.size());
         header.object_count = std::uint32_t(objects.size());
         header.patches = reinterpret_cast<std::uintptr_t>(patches.data());
-        header.materials = reinterpret_cast<std::uintptr_t>(materials.data());
+        const std::size_t words = materials.size() * sizeof(phantom_material) / sizeof(sent[0]);
+        // room for all that effect_bytes may be spoiled to: the module in user mode believes it
+        sent.assign(words + PHANTOM_EFFECT_BYTES_MAX / sizeof(sent[0]), 0);
+        if (words)
+            std::memcpy(sent.data(), materials.data(), words * sizeof(sent[0]));
+        std::copy(tables.begin(), tables.end(), sent.begin() + std::ptrdiff_t(words));
+        header.effect_bytes = std::uint32_t(tables.size() * sizeof(tables[0]));
+        header.materials = reinterpret_cast<std::uintptr_t>(sent.data());
         header.objects = reinterpret_cast<std::uintptr_t>(objects.data());
         return header;
     }

@@ -174,12 +174,22 @@ int Device::call_submit(PatchSet& set)
     set.header.patches = reinterpret_cast<std::uintptr_t>(set.patches.data());
     set.header.materials = reinterpret_cast<std::uintptr_t>(set.materials.data());
     set.header.objects = reinterpret_cast<std::uintptr_t>(set.objects.data());
-    set.header.effects = 0;
+    set.header.effects &= PHANTOM_EFFECTS_SPACE;
     for (const phantom_material& material : set.materials)
         set.header.effects |= material.effects;
+    set.header.effect_bytes = static_cast<__u32>(set.effect_tables.size() * sizeof(std::uint64_t));
     if (listener_)
         listener_->submitting(set);
-    return transport_->ioctl(PHANTOM_SUBMIT_SET, &set.header);
+    if (set.effect_tables.empty())
+        return transport_->ioctl(PHANTOM_SUBMIT_SET, &set.header);
+    // The module takes the tables from behind the materials.
+    const auto materials = std::as_bytes(std::span(set.materials));
+    const auto tables = std::as_bytes(std::span(set.effect_tables));
+    std::vector<std::byte> both(materials.begin(), materials.end());
+    both.insert(both.end(), tables.begin(), tables.end());
+    phantom_set header = set.header;
+    header.materials = reinterpret_cast<std::uintptr_t>(both.data());
+    return transport_->ioctl(PHANTOM_SUBMIT_SET, &header);
 }
 
 Result<bool> Device::try_submit(PatchSet& set)

@@ -19,10 +19,13 @@ namespace phantom::device {
 
 /// A set of patches ready to be submitted: owns what phantom_set points to.
 struct PatchSet {
-    phantom_set header{}; ///< counts and pointers are filled in by Device::submit()
+    /// Counts and pointers are filled in by Device::submit(), and of `effects` what materials name: effects
+    /// of space stand there.
+    phantom_set header{};
     std::vector<phantom_patch> patches;
     std::vector<phantom_material> materials;
     std::vector<phantom_object> objects;
+    std::vector<std::uint64_t> effect_tables; ///< as they lie behind the materials: phantom_abi.h, EFFECTS
 };
 
 struct UsermodeOptions {

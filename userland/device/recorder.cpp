@@ -74,8 +74,9 @@ void Recorder::submitting(const PatchSet& set)
     const std::lock_guard guard(mutex_);
     phantom_set header = set.header;
     header.patches = header.materials = header.objects = 0;
-    chunk(RECORDING_SET, {bytes_of(header), bytes_of(std::span(set.patches)),
-                          bytes_of(std::span(set.materials)), bytes_of(std::span(set.objects))});
+    chunk(RECORDING_SET,
+          {bytes_of(header), bytes_of(std::span(set.patches)), bytes_of(std::span(set.materials)),
+           bytes_of(std::span(set.effect_tables)), bytes_of(std::span(set.objects))});
     ++counts_.sets;
 }
 

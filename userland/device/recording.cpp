@@ -178,14 +178,17 @@ class Parser {
         payload = payload.subspan(sizeof(phantom_set));
         const std::uint64_t wanted = std::uint64_t{set.header.patch_count} * sizeof(phantom_patch) +
                                      std::uint64_t{set.header.material_count} * sizeof(phantom_material) +
+                                     set.header.effect_bytes +
                                      std::uint64_t{set.header.object_count} * sizeof(phantom_object);
-        if (wanted != payload.size())
+        if (wanted != payload.size() || set.header.effect_bytes % sizeof(std::uint64_t) != 0)
             return Error{
                 "", fmt::format("a set of {} bytes behind its header, expected {}", payload.size(), wanted)};
         append(payload, set.header.patch_count, set.patches);
         payload = payload.subspan(set.patches.size() * sizeof(phantom_patch));
         append(payload, set.header.material_count, set.materials);
         payload = payload.subspan(set.materials.size() * sizeof(phantom_material));
+        append(payload, set.header.effect_bytes / sizeof(std::uint64_t), set.effect_tables);
+        payload = payload.subspan(set.header.effect_bytes);
         append(payload, set.header.object_count, set.objects);
         out_.sets[set.header.id] = std::move(set);
         return success();

@@ -7,12 +7,15 @@
  *     chunk     = struct recording_chunk, payload    `size` bytes, a multiple of 8
  *
  *     ORIGIN  first, once: struct recording_origin
- *     START   struct recording_start: a START that succeeded. A run: the ticks from start_ns to the next
- * START SET     struct phantom_set, its patches, materials, objects: a SUBMIT_SET, before the first tick that
- * has its id. Of two with an id the later counts: the first was refused. Its pointers mean nothing TICKS
- * struct phantom_tick, one or more, in the order of read() MARK    struct recording_mark: what the status
- * page says of a run, now and then. A run that has fewer records up to `tick` than tick - missed has lost
- * some END     struct recording_end: the recorder ended as it should
+ *     START   struct recording_start: a START that succeeded. A run: the ticks from start_ns to the
+ *             next START
+ *     SET     struct phantom_set, its patches, materials, effect tables, objects: a SUBMIT_SET, before
+ *             the first tick that has its id. Of two with an id the later counts: the first was
+ *             refused. Its pointers mean nothing
+ *     TICKS   struct phantom_tick, one or more, in the order of read()
+ *     MARK    struct recording_mark: what the status page says of a run, now and then. A run that has
+ *             fewer records up to `tick` than tick - missed has lost some
+ *     END     struct recording_end: the recorder ended as it should
  *
  * SET_MODEL, SET_RATE, STOP, CLEAR_FAULT, errors and positions of the device stand in the ticks that they
  * came to (phantom_abi.h). A recorder that is not the feeder knows neither starts nor sets and does not set

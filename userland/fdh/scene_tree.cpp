@@ -3,10 +3,10 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "fdh/collector.hpp"
-#include "fdh/pose.hpp"
-#include "fdh/split.hpp"
+#include "fdh/object_tree.hpp"
 #include "fdh/tree_impl.hpp"
 
 namespace phantom::fdh {
@@ -16,11 +16,13 @@ struct SceneTree<K>::Impl {
     struct Object {
         TriangleTree<K> tree;
         Pose pose;
+        Slabs<K> local{};         ///< the tree's hull
+        bool hull_is_old = false; ///< waits for update()
     };
     std::vector<Object> objects;
-    Grid grid;                  ///< of level one: world coordinates to steps
-    std::vector<Node<K>> nodes; ///< leaf references are object numbers; empty objects are not in it
-    const SearchKernels<K>* kernels = &search_kernels<K>(Isa::best);
+    std::vector<Slabs<K>> hulls; ///< of each object, posed
+    std::vector<std::uint32_t> moved;
+    ObjectTree<K> level;
 
     static void check(const Pose& pose, std::size_t object)
     {
@@ -28,114 +30,81 @@ struct SceneTree<K>::Impl {
             throw std::invalid_argument("fdh: object " + std::to_string(object) + ": its pose is not finite");
     }
 
-    void update();
-    [[nodiscard]] Hull<K> in_steps(const Slabs<K>& slabs) const;
+    void mark(std::uint32_t object);
+    bool update();
 
     /// Visits the objects whose hulls are within the collector's limit, near ones first.
     template <class Collector>
     void collect(const Point& p, Collector& collector) const;
+
+    /// Lower bound of the distance between two objects.
+    [[nodiscard]] double separation(std::uint32_t first, std::uint32_t second) const;
+    /// Adds the pairs of an object with others, of which only those behind it if `each_once`.
+    void add_pairs(std::uint32_t object, double distance, bool each_once, std::vector<ObjectPair>& out) const;
 };
 
-/// Outward to float, relative to the level's origin.
 template <int K>
-Hull<K> SceneTree<K>::Impl::in_steps(const Slabs<K>& slabs) const
+void SceneTree<K>::Impl::mark(std::uint32_t object)
 {
-    constexpr auto directions = hull_directions<K>();
-    Hull<K> hull;
-    for (int k = 0; k < K / 2; k++) {
-        double shift = 0, magnitude = std::max(std::abs(slabs[k][0]), std::abs(slabs[k][1]));
-        for (int axis = 0; axis < 3; axis++) {
-            shift += directions[k][axis] * grid.origin[axis];
-            magnitude += std::abs(grid.origin[axis]);
-        }
-        const double slack = 0x1p-50 * magnitude;
-        hull.low[k] = round_down((slabs[k][0] - shift - slack) / grid.step);
-        hull.high[k] = round_up((slabs[k][1] - shift + slack) / grid.step);
-    }
-    return hull;
+    if (!std::exchange(objects[object].hull_is_old, true))
+        moved.push_back(object);
 }
 
 template <int K>
-void SceneTree<K>::Impl::update()
+bool SceneTree<K>::Impl::update()
 {
-    nodes.clear();
-    std::vector<Slabs<K>> hulls(objects.size());
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Point low = {infinity, infinity, infinity}, high = {-infinity, -infinity, -infinity};
-    std::vector<PrimitiveBox> boxes;
-    for (std::uint32_t i = 0; i < objects.size(); i++) {
-        if (objects[i].tree.triangles() == 0)
-            continue;
-        hulls[i] = posed_hull<K>(objects[i].tree.hull(), objects[i].pose);
-        boxes.emplace_back().index = i;
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = std::min(low[axis], hulls[i][axis][0]);
-            high[axis] = std::max(high[axis], hulls[i][axis][1]);
-        }
+    hulls.resize(objects.size(), empty_slabs<K>());
+    for (const std::uint32_t i : moved) {
+        Object& object = objects[i];
+        object.hull_is_old = false;
+        hulls[i] = object.tree.triangles() > 0 ? posed_hull<K>(object.local, object.pose) : empty_slabs<K>();
     }
-    if (boxes.empty())
-        return;
-    grid = Grid::over(low, high);
-    std::vector<Hull<K>> stepped(objects.size());
-    for (PrimitiveBox& box : boxes) {
-        stepped[box.index] = in_steps(hulls[box.index]);
-        std::copy_n(stepped[box.index].low, 3, box.low);
-        std::copy_n(stepped[box.index].high, 3, box.high);
-    }
-    const Shape shape = split(boxes, 1, 1);
-    nodes.assign(shape.nodes.size(), empty_node<K>());
-    for (std::size_t n = shape.nodes.size(); n-- > 0;)
-        for (int i = 0; i < shape.nodes[n].count; i++) {
-            const auto& child = shape.nodes[n].children[i];
-            const std::uint32_t object = boxes[child.begin].index;
-            if (child.reference & leaf_flag)
-                set_child(nodes[n], i, stepped[object], object | leaf_flag);
-            else
-                set_child(nodes[n], i, hull_of(nodes[child.reference]), child.reference);
-        }
+    const bool rebuilt = level.update(hulls, moved);
+    moved.clear();
+    return rebuilt;
 }
 
 template <int K>
 template <class Collector>
 void SceneTree<K>::Impl::collect(const Point& p, Collector& collector) const
 {
-    if (nodes.empty())
+    auto search = [&](std::uint32_t object) {
+        objects[object].tree.impl_->collect(to_local(objects[object].pose, p), object, collector);
+    };
+    if (objects.size() == 1) // its own root tells as much
+        search(0);
+    else
+        level.visit(
+            slabs_of<K>(p), [&] { return collector.limit(); }, search);
+}
+
+template <int K>
+double SceneTree<K>::Impl::separation(std::uint32_t first, std::uint32_t second) const
+{
+    const Object &a = objects[first], &b = objects[second];
+    return std::max({distance_bound<K>(hulls[first], hulls[second]),
+                     distance_bound_in_frame<K>(a.local, a.pose, b.local, b.pose),
+                     distance_bound_in_frame<K>(b.local, b.pose, a.local, a.pose)});
+}
+
+template <int K>
+void SceneTree<K>::Impl::add_pairs(std::uint32_t object, double distance, bool each_once,
+                                   std::vector<ObjectPair>& out) const
+{
+    if (objects[object].tree.triangles() == 0)
         return;
-    struct Waiting {
-        float bound2;
-        std::uint32_t child;
+    const std::size_t before = out.size();
+    auto consider = [&](std::uint32_t other) {
+        if (other == object || (each_once && other < object))
+            return;
+        const double at_least = separation(object, other);
+        if (at_least <= distance)
+            out.push_back({object, other, at_least});
     };
-    const auto point = project<K>(grid.to_steps(p));
-    auto hull_limit = [&] {
-        const double steps = collector.limit() / grid.step;
-        return search_limit(steps * steps);
-    };
-    float limit = hull_limit();
-    Waiting stack[stack_size];
-    int top = 0;
-    stack[top++] = {0, 0};
-    while (top > 0) {
-        const Waiting next = stack[--top];
-        if (!(next.bound2 < limit))
-            continue;
-        if (next.child & leaf_flag) {
-            const std::uint32_t object = next.child & ~leaf_flag;
-            objects[object].tree.impl_->collect(to_local(objects[object].pose, p), object, collector);
-            limit = hull_limit();
-            continue;
-        }
-        float bound2[lanes];
-        kernels->bounds(nodes[next.child], point, bound2);
-        const int base = top;
-        for (int lane = 0; lane < lanes; lane++) {
-            if (!(bound2[lane] < limit))
-                continue;
-            int place = top++;
-            for (; place > base && stack[place - 1].bound2 < bound2[lane]; place--)
-                stack[place] = stack[place - 1];
-            stack[place] = {bound2[lane], nodes[next.child].child[lane]};
-        }
-    }
+    level.visit(
+        hulls[object], [&] { return distance; }, consider);
+    std::sort(out.begin() + static_cast<std::ptrdiff_t>(before), out.end(),
+              [](const ObjectPair& a, const ObjectPair& b) { return a.second < b.second; });
 }
 
 template <int K>
@@ -153,8 +122,11 @@ template <int K>
 std::uint32_t SceneTree<K>::add(TriangleTree<K> tree, const Pose& pose)
 {
     Impl::check(pose, impl_->objects.size());
-    impl_->objects.push_back({std::move(tree), pose});
-    return static_cast<std::uint32_t>(impl_->objects.size() - 1);
+    const auto object = static_cast<std::uint32_t>(impl_->objects.size());
+    const Slabs<K> local = tree.hull();
+    impl_->objects.push_back({std::move(tree), pose, local});
+    impl_->mark(object);
+    return object;
 }
 
 template <int K>
@@ -162,12 +134,22 @@ void SceneTree<K>::set_pose(std::uint32_t object, const Pose& pose)
 {
     Impl::check(pose, object);
     impl_->objects.at(object).pose = pose;
+    impl_->mark(object);
 }
 
 template <int K>
-void SceneTree<K>::update()
+void SceneTree<K>::set_tree(std::uint32_t object, TriangleTree<K> tree)
 {
-    impl_->update();
+    typename Impl::Object& changed = impl_->objects.at(object);
+    changed.local = tree.hull();
+    changed.tree = std::move(tree);
+    impl_->mark(object);
+}
+
+template <int K>
+bool SceneTree<K>::update()
+{
+    return impl_->update();
 }
 
 template <int K>
@@ -201,7 +183,8 @@ template <int K>
 std::size_t SceneTree<K>::bytes() const
 {
     std::size_t sum = sizeof(Impl) + impl_->objects.capacity() * sizeof(typename Impl::Object) +
-                      impl_->nodes.capacity() * sizeof(Node<K>);
+                      impl_->hulls.capacity() * sizeof(Slabs<K>) +
+                      impl_->moved.capacity() * sizeof(std::uint32_t) + impl_->level.bytes();
     for (const auto& object : impl_->objects)
         sum += object.tree.bytes();
     return sum;
@@ -228,6 +211,26 @@ void SceneTree<K>::within(const Point& p, double radius, std::vector<Hit>& out) 
     WithinCollector collector(out, radius);
     impl_->collect(p, collector);
     collector.finish();
+}
+
+template <int K>
+void SceneTree<K>::pairs_near(std::uint32_t object, double distance, std::vector<ObjectPair>& out) const
+{
+    if (object >= impl_->objects.size())
+        throw std::out_of_range("fdh: no object " + std::to_string(object));
+    out.clear();
+    if (distance >= 0)
+        impl_->add_pairs(object, distance, false, out);
+}
+
+template <int K>
+void SceneTree<K>::pairs(double distance, std::vector<ObjectPair>& out) const
+{
+    out.clear();
+    if (!(distance >= 0))
+        return;
+    for (std::uint32_t object = 0; object < impl_->objects.size(); object++)
+        impl_->add_pairs(object, distance, true, out);
 }
 
 template class SceneTree<6>;

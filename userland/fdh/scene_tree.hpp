@@ -6,14 +6,15 @@
 #include <memory>
 #include <vector>
 
+#include "fdh/pose.hpp"
 #include "fdh/tree.hpp"
 
 namespace phantom::fdh {
 
-/// world = rotation * local + translation. rotation is orthonormal, row-major.
-struct Pose {
-    std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
-    Point translation{0, 0, 0};
+/// Two objects that may be near each other.
+struct ObjectPair {
+    std::uint32_t first, second;
+    double at_least; ///< no triangle of the one is nearer to any of the other [mesh unit]
 };
 
 /// Any number of threads may query at once; none may while add, set_pose or update runs.
@@ -29,8 +30,12 @@ class SceneTree {
     /// Throws std::invalid_argument for a pose that is not finite; so does set_pose.
     std::uint32_t add(TriangleTree<K> tree, const Pose& pose);
     void set_pose(std::uint32_t object, const Pose& pose);
-    /// Rebuilds level one from the poses. O(objects log objects).
-    void update();
+    /// Another tree for an object, such as its refit after the object was deformed.
+    void set_tree(std::uint32_t object, TriangleTree<K> tree);
+    /// Takes poses and trees set since the last call into level one, which is refitted, or built anew where
+    /// the refit would have become slow to query (object_tree.hpp has the measure). Returns true if it was
+    /// built anew. Costs O(objects), then O(objects log objects), and allocates nothing once warm.
+    bool update();
 
     [[nodiscard]] std::size_t objects() const;
     [[nodiscard]] const TriangleTree<K>& tree(std::uint32_t object) const;
@@ -42,6 +47,15 @@ class SceneTree {
     /// objects that are near, the worst counts.
     void nearest(const Point& p, std::size_t count, double max_radius, Nearest& out) const;
     void within(const Point& p, double radius, std::vector<Hit>& out) const;
+
+    /// Every object whose triangles may be within `distance` of the given object's, ordered by number: the
+    /// first level of collision detection in Kabelac 2001, section 5, for the hand's own object. `first` is
+    /// the given object. Never misses one. Hulls decide, as seen in world directions and from both objects'
+    /// frames: some that are farther may be there. An invalid distance (negative, NaN) finds nothing; an
+    /// object that is not there throws std::out_of_range.
+    void pairs_near(std::uint32_t object, double distance, std::vector<ObjectPair>& out) const;
+    /// All such pairs, each once with first < second, ordered.
+    void pairs(double distance, std::vector<ObjectPair>& out) const;
 
   private:
     struct Impl;

@@ -44,6 +44,8 @@ device::PatchSet patch_set(std::uint64_t id)
     set.objects = {patterned<phantom_object>(4)};
     set.header.patch_count = 2;
     set.header.material_count = set.header.object_count = 1;
+    set.effect_tables = {patterned<std::uint64_t>(5), patterned<std::uint64_t>(6)};
+    set.header.effect_bytes = 16;
     return set;
 }
 
@@ -125,6 +127,7 @@ TEST_F(RecordingFile, ComesBackAsItWasWritten)
     EXPECT_TRUE(same_bytes(set.patches[1], patch_set(2).patches[1]));
     EXPECT_TRUE(same_bytes(set.materials[0], patch_set(2).materials[0]));
     EXPECT_TRUE(same_bytes(set.objects[0], patch_set(2).objects[0]));
+    EXPECT_EQ(set.effect_tables, patch_set(2).effect_tables);
     EXPECT_EQ(set.header.radius_nm, patch_set(2).header.radius_nm);
 }
 

@@ -40,17 +40,16 @@ Real segment_distance(const Vector& a, const Vector& b)
 long double true_distance(const Point& p, const Point& a, const Point& b, const Point& c)
 {
     std::array<Vector, 3> corner;
-    for (int i = 0; i < 3; i++)
-        corner[i] = minus({(i == 0   ? a
-                            : i == 1 ? b
-                                     : c)[0],
-                           (i == 0   ? a
-                            : i == 1 ? b
-                                     : c)[1],
-                           (i == 0   ? a
-                            : i == 1 ? b
-                                     : c)[2]},
-                          {p[0], p[1], p[2]});
+    for (int axis = 0; axis < 3; axis++) {
+        corner[0][axis] = Real(a[axis]) - p[axis];
+        corner[1][axis] = Real(b[axis]) - p[axis];
+        corner[2][axis] = Real(c[axis]) - p[axis];
+    }
+    return true_distance_from_origin(corner);
+}
+
+long double true_distance_from_origin(std::array<std::array<long double, 3>, 3> corner)
+{
     Real best = INFINITY;
     int longest = 0;
     std::array<Real, 3> lengths;

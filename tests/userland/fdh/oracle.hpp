@@ -15,6 +15,8 @@ namespace phantom::fdh::test {
 /// Distance from a point to a triangle in long double, by another method than the library's: in the plane of
 /// the triangle, with an orthonormal basis from its longest edge.
 long double true_distance(const Point& p, const Point& a, const Point& b, const Point& c);
+/// The same from the origin to a triangle in long double.
+long double true_distance_from_origin(std::array<std::array<long double, 3>, 3> corner);
 
 /// A triangle of a scene and its true distance.
 struct Truth {

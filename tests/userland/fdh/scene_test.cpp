@@ -3,39 +3,14 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fdh/pose.hpp"
 #include "oracle.hpp"
+#include "poses.hpp"
 
 namespace phantom::fdh::test {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Rotation by an angle about an axis of unit length (Rodrigues), then a translation.
-Pose turn(Point axis, double angle, const Point& translation)
-{
-    const double length = std::hypot(axis[0], axis[1], axis[2]);
-    for (double& x : axis)
-        x /= length;
-    const double c = std::cos(angle), s = std::sin(angle), t = 1 - c;
-    const auto [x, y, z] = axis;
-    return {{c + t * x * x, t * x * y - s * z, t * x * z + s * y, t * x * y + s * z, c + t * y * y,
-             t * y * z - s * x, t * x * z - s * y, t * y * z + s * x, c + t * z * z},
-            translation};
-}
-
-Point to_world(const Pose& pose, const Point& v)
-{
-    Point w;
-    for (int row = 0; row < 3; row++) {
-        long double sum = pose.translation[row];
-        for (int axis = 0; axis < 3; axis++)
-            sum += static_cast<long double>(pose.rotation[3 * row + axis]) * v[axis];
-        w[row] = static_cast<double>(sum);
-    }
-    return w;
-}
 
 /// A scene and the same triangles in world coordinates.
 template <int K>
@@ -48,13 +23,7 @@ struct Scene {
         EXPECT_EQ(tree.add(TriangleTree<K>::build(mesh.view()), pose), meshes.size());
         meshes.push_back(mesh);
     }
-    [[nodiscard]] Mesh world(std::uint32_t object) const
-    {
-        Mesh mesh = meshes[object];
-        for (auto& v : mesh.vertices)
-            v = to_world(tree.pose(object), v);
-        return mesh;
-    }
+    [[nodiscard]] Mesh world(std::uint32_t object) const { return posed(meshes[object], tree.pose(object)); }
     [[nodiscard]] std::vector<Truth> truth(const Point& p) const
     {
         std::vector<Truth> all;

@@ -81,7 +81,9 @@ void recording_set(const struct phantom_set* set)
     const struct part parts[] = {
         {set, sizeof(*set)},
         {(const void*)(uintptr_t)set->patches, set->patch_count * sizeof(struct phantom_patch)},
-        {(const void*)(uintptr_t)set->materials, set->material_count * sizeof(struct phantom_material)},
+        /* the effects' tables lie behind the materials */
+        {(const void*)(uintptr_t)set->materials,
+         set->material_count * sizeof(struct phantom_material) + set->effect_bytes},
         {(const void*)(uintptr_t)set->objects, set->object_count * sizeof(struct phantom_object)},
     };
 

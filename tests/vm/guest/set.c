@@ -71,11 +71,12 @@ static void header_flag(struct vm_plate* plate, int at)
 {
     plate->set.flags = 1u << at;
 }
-static void header_reserved(struct vm_plate* plate, int at)
+/* Tables that no effect calls for. */
+static void header_effect_bytes(struct vm_plate* plate, int at)
 {
-    plate->set.reserved = 1u << at;
+    plate->set.effect_bytes = 1u << at;
 }
-/* Unknown effects, and a known one that no material names. */
+/* Unknown effects, known ones that no material names, and those of space without their tables. */
 static void header_effect(struct vm_plate* plate, int at)
 {
     plate->set.effects = 1u << at;
@@ -156,10 +157,11 @@ static void damping_without_its_effect(struct vm_plate* plate, int at)
 
 static void material_effect(struct vm_plate* plate, int at)
 {
-    plate->material.effects = 1u << at; /* bit 0 is known, but then the header lacks it */
+    plate->material.effects = 1u << at; /* some bits are known, but then the header lacks them */
 }
 
-static void material_effect_unknown_in_both(struct vm_plate* plate, int at)
+/* Unknown, of space, or without its table. */
+static void material_effect_unfit_in_both(struct vm_plate* plate, int at)
 {
     plate->material.effects = 2u << at;
     plate->set.effects = 2u << at;
@@ -210,7 +212,7 @@ static const struct fault faults[] = {
     {"a material index without materials", 1, no_material},
     {"an object index without objects", 1, no_object},
     {"flags bit", 32, header_flag},
-    {"header reserved bit", 32, header_reserved},
+    {"header effect_bytes bit", 32, header_effect_bytes},
     {"header effect bit", 32, header_effect},
     {"vertex beyond 1 m", 9, vertex_out_of_range},
     {"vertex at the type's border", 9, vertex_at_the_border_of_the_type},
@@ -226,7 +228,7 @@ static const struct fault faults[] = {
     {"radius 0", 1, radius_zero},
     {"damping without its effect", 1, damping_without_its_effect},
     {"material effect bit", 32, material_effect},
-    {"effect bit unknown to both", 31, material_effect_unknown_in_both},
+    {"unfit effect bit in both", 31, material_effect_unfit_in_both},
     {"material reserved bit", 128, material_reserved},
     {"object translation", 3, object_moved},
     {"object rotation", 3, object_turned},
