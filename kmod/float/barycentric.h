@@ -20,7 +20,7 @@
 
 #if PHANTOM_LANES == 1
 
-/* mm^2. Of areas between them one inverse does for all; that of smaller ones might not fit, of larger ones is coarse. */
+/* mm^2. Between them one inverse does for all; that of a smaller area might not fit, of a larger one is coarse. */
 #define BARYCENTRIC_SMALL REAL(1e-6)
 #define BARYCENTRIC_LARGE REAL(100)
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * cubic_fixed.h - fixed point: the cubic of a patch whose shell has folded over, or nearly so, to its last bit.
+ * cubic_fixed.h - fixed point: the cubic of a patch whose shell has folded over, or nearly so, exactly.
  *
  * Where the shells round a point shrink to it (the centre of a hollow ball) c has three roots next to one
  * another, and an error of c moves them by its cube root: Q36's 1.5e-11 by half a um. But all that c is made
