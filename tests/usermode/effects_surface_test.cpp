@@ -33,6 +33,16 @@ TEST_F(Friction, SticksAsASpringBreaksAwayAtStaticAndSlidesAtDynamic)
         EXPECT_NEAR(most, 0.6, 2e-3) << "static";
         EXPECT_NEAR(force({1.001, 0, 2})[0], -0.4, 1e-5) << "dynamic";
         EXPECT_NEAR(force({1.0, 0, 2})[0], -0.4 + 2e-3, 1e-5) << "back: the spring lets go first";
+        force({0.8, 0, 2}); // all let go: it has stuck again
+        most = 0;
+        for (int um = 800; um <= 1500; ++um)
+            most = std::max(most, -force({um * 1e-3, 0, 2})[0]);
+        EXPECT_NEAR(most, 0.6, 3e-3) << "static again";
+        force({1.4, 0, 2}); // half let go: half of the way back to static
+        most = 0;
+        for (int um = 1400; um <= 2000; ++um)
+            most = std::max(most, -force({um * 1e-3, 0, 2})[0]);
+        EXPECT_NEAR(most, 0.5, 3e-3);
     }
 }
 

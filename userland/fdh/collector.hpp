@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Keeps what a search finds inside the caller's own vectors, so that a warm query allocates nothing.
+// Gathers what searches of one or several trees find, inside the caller's own vectors, so that a warm query
+// allocates nothing.
 #pragma once
 
+#include <algorithm>
+#include <span>
+
+#include "fdh/precise_search.hpp"
 #include "fdh/search.hpp"
 
 namespace phantom::fdh {
+
+/// How far a computed distance d from one query point may be from the true one: base + slope d [mesh unit].
+struct ErrorBound {
+    double base = 0, slope = 0;
+    [[nodiscard]] double at(double distance) const { return base + slope * distance; }
+};
 
 /// The `count` nearest within a radius, and how far they reach.
 class NearestCollector {
@@ -12,23 +23,44 @@ class NearestCollector {
     NearestCollector(Nearest& out, std::size_t count, double max_radius);
     NearestCollector(const NearestCollector&) = delete;
 
-    /// Before each tree: searches to max_radius plus the tree's error bound for this query point, or to
-    /// the farthest that may still be wanted.
-    Sink& open(double distance_error);
-    /// Distance beyond which no triangle is of interest.
-    [[nodiscard]] double limit() const;
-    /// Sorts, cuts to `count` and computes the coverage. The collector is done then.
+    /// Distance beyond which no triangle is of interest [mesh unit].
+    [[nodiscard]] double limit() const { return std::min(max_radius_, kept_limit_); }
+
+    /// Searches a tree from a point in its neighbourhood, or from anywhere.
+    template <int K>
+    void search(const TreeView<K>& tree, const SearchKernels<K>& kernels, const SearchPoint<K>& point,
+                double step, std::uint32_t object, const ErrorBound& error);
+    template <int K>
+    void search_precisely(const TreeView<K>& tree, const Point& steps, double step, std::uint32_t object,
+                          const ErrorBound& error);
+    /// Looks only at some leaves, which hold all triangles of a tree within `room` of the point. False, and
+    /// nothing taken, if that is not enough to know the nearest.
+    template <int K>
+    [[nodiscard]] bool search_some(std::span<const Leaf> leaves, double room, const SearchKernels<K>& kernels,
+                                   const SearchPoint<K>& point, double step, std::uint32_t object,
+                                   const ErrorBound& error);
+    /// How far the answer reaches by now: to the farthest kept, or the limit if there are fewer.
+    [[nodiscard]] double reach() const { return limit(); }
+
+    /// Cuts to `count` and computes the coverage. The collector is done then.
     void finish();
 
   private:
-    static void make_room(Sink& sink);
+    class HitSink;
+    void note(const ErrorBound& error);
+    [[nodiscard]] Candidates candidates(const ErrorBound& error, double step);
+    template <int K>
+    void take(Candidates& found, const SearchKernels<K>& kernels, double step, std::uint32_t object);
+    [[nodiscard]] Hit* room_for(std::size_t more);
+    /// Once `keep_` hits are there: forgets the others and puts the farthest of them last.
+    void narrow();
 
     Nearest& out_;
-    Sink sink_;
-    std::size_t count_;
+    std::size_t keep_;     ///< one more than asked for: the nearest left out tells how far the rest reach
+    std::size_t size_ = 0; ///< hits so far; out_.hits may be longer
     double max_radius_;
-    double error_ = 0;  ///< largest distance_error of the trees searched
-    double kept_limit_; ///< no hit beyond this is wanted: the farthest of count + 1 found so far
+    ErrorBound error_;  ///< the worst of the trees searched
+    double kept_limit_; ///< no hit beyond this is wanted: the farthest of keep_ found so far
 };
 
 /// All within a radius.
@@ -37,15 +69,16 @@ class WithinCollector {
     WithinCollector(std::vector<Hit>& out, double radius);
     WithinCollector(const WithinCollector&) = delete;
 
-    Sink& open(double distance_error);
     [[nodiscard]] double limit() const { return radius_; }
-    void finish();
+    template <int K>
+    void search(const TreeView<K>& tree, const SearchKernels<K>& kernels, const SearchPoint<K>& point,
+                double step, std::uint32_t object, const ErrorBound& error);
+    template <int K>
+    void search_precisely(const TreeView<K>& tree, const Point& steps, double step, std::uint32_t object,
+                          const ErrorBound& error);
 
   private:
-    static void make_room(Sink& sink);
-
     std::vector<Hit>& out_;
-    Sink sink_;
     double radius_;
 };
 

@@ -19,6 +19,11 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// beyond it finds nothing and covers nothing.
 inline constexpr double largest_coordinate = 1e100;
 
+/// Along the axes, its surface included. A side may be infinite.
+struct Box {
+    Point low, high;
+};
+
 /// Triangles that somebody else owns; must outlive every tree built on it only while building.
 struct MeshView {
     std::span<const Point> vertices; ///< any unit; finite, magnitude <= largest_coordinate

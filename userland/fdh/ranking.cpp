@@ -128,4 +128,10 @@ void sort_nearest(std::span<const Hit> hits, std::size_t wanted, std::vector<Hit
     sorted.resize(wanted);
 }
 
+void Nearest::sort()
+{
+    sort_nearest(hits, hits.size(), sorted);
+    hits.swap(sorted);
+}
+
 } // namespace phantom::fdh

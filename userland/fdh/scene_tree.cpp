@@ -1,47 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "fdh/scene_tree.hpp"
 
-#include <stdexcept>
-#include <string>
+#include <algorithm>
 #include <utility>
 
-#include "fdh/collector.hpp"
-#include "fdh/object_tree.hpp"
-#include "fdh/tree_impl.hpp"
+#include "fdh/pair_search.hpp"
+#include "fdh/region_search.hpp"
+#include "fdh/scene_tree_impl.hpp"
 
 namespace phantom::fdh {
-
-template <int K>
-struct SceneTree<K>::Impl {
-    struct Object {
-        TriangleTree<K> tree;
-        Pose pose;
-        Slabs<K> local{};         ///< the tree's hull
-        bool hull_is_old = false; ///< waits for update()
-    };
-    std::vector<Object> objects;
-    std::vector<Slabs<K>> hulls; ///< of each object, posed
-    std::vector<std::uint32_t> moved;
-    ObjectTree<K> level;
-
-    static void check(const Pose& pose, std::size_t object)
-    {
-        if (!finite(pose))
-            throw std::invalid_argument("fdh: object " + std::to_string(object) + ": its pose is not finite");
-    }
-
-    void mark(std::uint32_t object);
-    bool update();
-
-    /// Visits the objects whose hulls are within the collector's limit, near ones first.
-    template <class Collector>
-    void collect(const Point& p, Collector& collector) const;
-
-    /// Lower bound of the distance between two objects.
-    [[nodiscard]] double separation(std::uint32_t first, std::uint32_t second) const;
-    /// Adds the pairs of an object with others, of which only those behind it if `each_once`.
-    void add_pairs(std::uint32_t object, double distance, bool each_once, std::vector<ObjectPair>& out) const;
-};
 
 template <int K>
 void SceneTree<K>::Impl::mark(std::uint32_t object)
@@ -62,20 +29,6 @@ bool SceneTree<K>::Impl::update()
     const bool rebuilt = level.update(hulls, moved);
     moved.clear();
     return rebuilt;
-}
-
-template <int K>
-template <class Collector>
-void SceneTree<K>::Impl::collect(const Point& p, Collector& collector) const
-{
-    auto search = [&](std::uint32_t object) {
-        objects[object].tree.impl_->collect(to_local(objects[object].pose, p), object, collector);
-    };
-    if (objects.size() == 1) // its own root tells as much
-        search(0);
-    else
-        level.visit(
-            slabs_of<K>(p), [&] { return collector.limit(); }, search);
 }
 
 template <int K>
@@ -210,7 +163,39 @@ void SceneTree<K>::within(const Point& p, double radius, std::vector<Hit>& out) 
         return;
     WithinCollector collector(out, radius);
     impl_->collect(p, collector);
-    collector.finish();
+}
+
+template <int K>
+void SceneTree<K>::along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (!valid_segment({from, to}, radius))
+        return;
+    Slabs<K> hull = slabs_of<K>(from);
+    grow<K>(hull, slabs_of<K>(to));
+    impl_->level.visit(
+        hull, [&] { return radius; },
+        [&](std::uint32_t i) {
+            const typename Impl::Object& object = impl_->objects[i];
+            const Segment local = {to_local(object.pose, from), to_local(object.pose, to)};
+            const auto& data = object.tree.impl_->data;
+            search_along<K>(object.tree.impl_->view, data.grid, local, radius, i, out);
+        });
+}
+
+template <int K>
+void SceneTree<K>::in_box(const Box& box, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (!valid_box(box))
+        return;
+    impl_->level.visit(
+        slabs_of_box<K>(box), [] { return 0.0; },
+        [&](std::uint32_t i) {
+            const typename Impl::Object& object = impl_->objects[i];
+            const auto& data = object.tree.impl_->data;
+            search_box<K>(object.tree.impl_->view, data.grid, object.pose, box, i, out);
+        });
 }
 
 template <int K>
@@ -221,6 +206,20 @@ void SceneTree<K>::pairs_near(std::uint32_t object, double distance, std::vector
     out.clear();
     if (distance >= 0)
         impl_->add_pairs(object, distance, false, out);
+}
+
+template <int K>
+void SceneTree<K>::triangle_pairs(std::uint32_t first, std::uint32_t second, double distance,
+                                  std::vector<TrianglePair>& out) const
+{
+    out.clear();
+    auto posed = [&](std::uint32_t i) {
+        const typename Impl::Object& object = impl_->objects.at(i);
+        return PosedTree<K>{object.tree.impl_->view, object.tree.impl_->data.grid, object.pose};
+    };
+    const PosedTree<K> a = posed(first), b = posed(second);
+    if (distance >= 0)
+        search_pairs<K>(a, b, distance, out);
 }
 
 template <int K>

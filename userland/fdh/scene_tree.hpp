@@ -48,6 +48,10 @@ class SceneTree {
     void nearest(const Point& p, std::size_t count, double max_radius, Nearest& out) const;
     void within(const Point& p, double radius, std::vector<Hit>& out) const;
 
+    /// As TriangleTree::along and TriangleTree::in_box, over all objects, in world coordinates.
+    void along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const;
+    void in_box(const Box& box, std::vector<Hit>& out) const;
+
     /// Every object whose triangles may be within `distance` of the given object's, ordered by number: the
     /// first level of collision detection in Kabelac 2001, section 5, for the hand's own object. `first` is
     /// the given object. Never misses one. Hulls decide, as seen in world directions and from both objects'
@@ -56,8 +60,15 @@ class SceneTree {
     void pairs_near(std::uint32_t object, double distance, std::vector<ObjectPair>& out) const;
     /// All such pairs, each once with first < second, ordered.
     void pairs(double distance, std::vector<ObjectPair>& out) const;
+    /// Every pair of a triangle of the one object and one of the other that are within `distance`, in no
+    /// order: what the objects of a pair come down to. Never misses one; may include some that are farther,
+    /// by twice the sum of both trees' accuracies and 2^-48 of the largest coordinate of their poses and
+    /// meshes. Invalid distances and objects as for pairs_near().
+    void triangle_pairs(std::uint32_t first, std::uint32_t second, double distance,
+                        std::vector<TrianglePair>& out) const;
 
   private:
+    friend class CoherentQuery<K>;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -2,35 +2,44 @@
 #include "fdh/search.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include "fdh/grid.hpp"
 
 namespace phantom::fdh {
 
 template <int K>
-ProjectedPoint<K> project(const Point& p)
+SearchPoint<K> search_point(const Point& steps, double longest_edge, bool prefetch)
 {
     constexpr auto directions = hull_directions<K>();
-    constexpr double farthest = 0x1p61;
-    // Three terms, two additions: far below 2^-50 of the sum of magnitudes.
-    const double slack = 0x1p-50 * (std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]));
-    ProjectedPoint<K> result;
+    SearchPoint<K> point;
+    float rounded[3];
+    for (int i = 0; i < 3; i++) {
+        constexpr double to_whole = 0x1.8p52; // where doubles are one apart
+        const double whole = steps[i] + to_whole - to_whole;
+        point.exact[i] = steps[i];
+        point.whole[i] = static_cast<float>(whole);
+        point.fraction[i] = static_cast<float>(steps[i] - whole);
+        rounded[i] = static_cast<float>(steps[i]);
+    }
     for (int k = 0; k < K / 2; k++) {
         const auto& d = directions[k];
-        const double x = d[0] * p[0] + d[1] * p[1] + d[2] * p[2];
-        result.low[k] = round_down(std::clamp(x - slack, -farthest, farthest));
-        result.high[k] = round_up(std::clamp(x + slack, -farthest, farthest));
+        point.projected[k] = static_cast<float>(d[0]) * rounded[0] + static_cast<float>(d[1]) * rounded[1] +
+                             static_cast<float>(d[2]) * rounded[2];
     }
-    return result;
+    // A coordinate is off by one step at most, the sum of three by six; a bound by no more than the root of
+    // the diagonals' Σ e² / 4: six. The search's own rounding is allowed for there.
+    constexpr double projection_steps = 8;
+    point.hull_slack = static_cast<float>(projection_steps + 1.01 * float_error * longest_edge);
+    point.prefetch = prefetch;
+    return point;
 }
 
-float search_limit(double limit2)
+float search_limit2(double limit)
 {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    constexpr double largest = std::numeric_limits<float>::max();
-    const double padded = limit2 * (1 + 0x1p-19);
-    return padded < largest / 2 ? next_up(round_up(padded)) : infinity;
+    // More than the square of any distance from within farthest_point.
+    constexpr double largest = 0x1p60;
+    return next_up(round_up(std::min(limit * limit, largest)));
 }
 
 template <int K>
@@ -50,13 +59,12 @@ const SearchKernels<K>& search_kernels(Isa isa)
     }
 }
 
-template ProjectedPoint<6> project<6>(const Point&);
-template ProjectedPoint<14> project<14>(const Point&);
-template ProjectedPoint<18> project<18>(const Point&);
-template ProjectedPoint<26> project<26>(const Point&);
-template const SearchKernels<6>& search_kernels<6>(Isa);
-template const SearchKernels<14>& search_kernels<14>(Isa);
-template const SearchKernels<18>& search_kernels<18>(Isa);
-template const SearchKernels<26>& search_kernels<26>(Isa);
+#define PHANTOM_FDH_SEARCH_FOR(K)                                                                            \
+    template SearchPoint<K> search_point<K>(const Point&, double, bool);                                     \
+    template const SearchKernels<K>& search_kernels<K>(Isa);
+PHANTOM_FDH_SEARCH_FOR(6)
+PHANTOM_FDH_SEARCH_FOR(14)
+PHANTOM_FDH_SEARCH_FOR(18)
+PHANTOM_FDH_SEARCH_FOR(26)
 
 } // namespace phantom::fdh

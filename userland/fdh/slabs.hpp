@@ -37,6 +37,27 @@ Slabs<K> slabs_of(const Point& p)
     return slabs;
 }
 
+/// A hull that holds the box, as far as there can be anything in it.
+template <int K>
+Slabs<K> slabs_of_box(const Box& box)
+{
+    constexpr auto directions = hull_directions<K>();
+    constexpr double far = 8 * largest_coordinate; // beyond any posed vertex; infinities would make NaNs
+    Slabs<K> slabs;
+    for (int k = 0; k < K / 2; k++) {
+        double low = 0, high = 0, magnitude = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            const double d = directions[k][axis];
+            const double a = std::clamp(box.low[axis], -far, far), b = std::clamp(box.high[axis], -far, far);
+            low += std::min(d * a, d * b);
+            high += std::max(d * a, d * b);
+            magnitude += std::max(std::abs(a), std::abs(b));
+        }
+        slabs[k] = {low - 0x1p-50 * magnitude, high + 0x1p-50 * magnitude};
+    }
+    return slabs;
+}
+
 /// Makes `slabs` hold `other` as well.
 template <int K>
 void grow(Slabs<K>& slabs, const Slabs<K>& other)

@@ -7,6 +7,7 @@
 
 #include "fdh/collector.hpp"
 #include "fdh/parallel.hpp"
+#include "fdh/region_search.hpp"
 #include "fdh/tree_impl.hpp"
 
 namespace phantom::fdh {
@@ -39,15 +40,34 @@ template <int K>
 TriangleTree<K> TriangleTree<K>::build(const MeshView& mesh, const BuildOptions& options)
 {
     check_isa(options.isa);
-    return TriangleTree(
-        std::make_shared<const Impl>(build_tree<K>(mesh, thread_count(options.threads)), options.isa));
+    return TriangleTree(std::make_shared<const Impl>(
+        build_tree<K>(mesh, thread_count(options.threads), options.isa), options.isa));
+}
+
+template <int K>
+TriangleTree<K> TriangleTree<K>::refitted(const MeshView& mesh, const BuildOptions& options) const
+{
+    check_isa(options.isa);
+    return TriangleTree(std::make_shared<const Impl>(
+        refit_tree(impl_->data, mesh, thread_count(options.threads)), options.isa));
+}
+
+template <int K>
+double TriangleTree<K>::spread() const
+{
+    return impl_->data.spread;
 }
 
 template <int K>
 TreeImage TriangleTree<K>::image() const
 {
     const TreeData<K>& data = impl_->data;
-    return {data.grid.origin, data.grid.step, data.triangles, std::as_bytes(data.nodes),
+    return {data.grid.origin,
+            data.grid.step,
+            data.longest_edge,
+            data.spread,
+            data.triangles,
+            std::as_bytes(data.nodes),
             std::as_bytes(data.leaves)};
 }
 
@@ -58,10 +78,15 @@ std::optional<TriangleTree<K>> TriangleTree<K>::open(const TreeImage& image,
     check_isa(isa);
     const auto nodes = elements_of<Node<K>>(image.nodes);
     const auto leaves = elements_of<Leaf>(image.leaves);
-    if (!nodes || !leaves || !(image.step > 0) || image.triangles >= leaf_flag)
+    if (!nodes || !leaves || !(image.step > 0) || image.triangles >= most_triangles)
         return std::nullopt;
-    TreeData<K> data{
-        {image.origin, image.step, 1 / image.step}, *nodes, *leaves, image.triangles, std::move(keeper)};
+    TreeData<K> data{{image.origin, image.step, 1 / image.step},
+                     *nodes,
+                     *leaves,
+                     image.triangles,
+                     image.longest_edge,
+                     image.spread,
+                     std::move(keeper)};
     if (!consistent(data))
         return std::nullopt;
     return TriangleTree(std::make_shared<const Impl>(std::move(data), isa));
@@ -87,13 +112,28 @@ void TriangleTree<K>::within(const Point& p, double radius, std::vector<Hit>& ou
         return;
     WithinCollector collector(out, radius);
     impl_->collect(p, 0, collector);
-    collector.finish();
 }
 
 template <int K>
-double TriangleTree<K>::accuracy(const Point& p) const
+void TriangleTree<K>::along(const Point& from, const Point& to, double radius, std::vector<Hit>& out) const
 {
-    return impl_->data.grid.distance_error(impl_->data.grid.to_steps(p));
+    out.clear();
+    if (valid_segment({from, to}, radius))
+        search_along<K>(impl_->view, impl_->data.grid, {from, to}, radius, 0, out);
+}
+
+template <int K>
+void TriangleTree<K>::in_box(const Box& box, std::vector<Hit>& out) const
+{
+    out.clear();
+    if (valid_box(box))
+        search_box<K>(impl_->view, impl_->data.grid, {}, box, 0, out);
+}
+
+template <int K>
+double TriangleTree<K>::accuracy(const Point& p, double distance) const
+{
+    return impl_->error_from(impl_->data.grid.to_steps(p)).at(distance);
 }
 
 template <int K>

@@ -185,7 +185,6 @@ struct Feeder::Impl {
         const double search_mm =
             std::clamp(want.need_mm, options.search_radius_mm, 2.0 * options.search_radius_mm);
         for (;;) {
-            nearest.clear();
             tree.nearest(want.centre, budget, search_mm, nearest);
             if (nearest.coverage >= want.need_mm || nearest.hits.size() < budget || budget >= growth_max())
                 break;
@@ -286,7 +285,8 @@ Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::
         const Impl::Wanted want = self.wanted(tip_mm, proxy_mm, inside);
         self.query(want, detail.tree);
         queried = Clock::now();
-        detail.builder.build(self.nearest.hits, want.centre, self.nearest.coverage, self.set);
+        self.nearest.sort();
+        detail.builder.build(self.nearest, want.centre, self.set);
         report.hits = self.nearest.hits;
         self.set.header.level = report.level;
         self.set.header.level_error_nm = detail.error_nm;

@@ -45,16 +45,14 @@ class SetBuilder {
   public:
     /// patches_max: what the device takes in a set; build_all() does not ask.
     explicit SetBuilder(const scene::Scene& scene, std::uint32_t patches_max = PHANTOM_PATCHES_MAX);
-    /// hits by ascending distance; centre in world mm; coverage in mm as the query gave it. Patches,
-    /// materials or objects beyond what a set can carry cut it short: the coverage then ends at the first
-    /// left out.
-    void build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm, double coverage_mm,
-               device::PatchSet& out);
+    /// nearest: the answer to a query at the centre (world mm), sorted. Patches, materials or objects beyond
+    /// what a set can carry cut it short: the coverage then ends at the first left out.
+    void build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm, device::PatchSet& out);
     /// Every triangle of the scene, covering everything. centre in world mm.
     void build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out);
 
   private:
-    void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out) const;
+    void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out);
     /// False when the set has no room for the face's material or object.
     bool claim(std::uint32_t object, device::PatchSet& out);
     /// Forgets the numbers that claim() gave for these faces.
@@ -75,6 +73,7 @@ class SetBuilder {
     std::uint32_t patches_max_;
     std::vector<std::uint32_t> slot_;                 ///< scratch: face number to index in the set
     std::vector<std::uint32_t> material_slot_;        ///< scratch: scene material to index in the set
+    std::vector<std::uint32_t> claimed_;              ///< scratch: scene material of each one in the set
     std::vector<std::uint32_t> object_slot_;          ///< scratch: scene object to index in the set
     std::vector<std::array<std::uint32_t, 2>> faces_; ///< scratch: (object, face)
     struct NeededRim {

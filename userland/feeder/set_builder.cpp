@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "feeder/effect_tables.hpp"
 #include "feeder/feeder.hpp"
 
 namespace phantom::feeder {
@@ -95,6 +96,7 @@ phantom_material material_of(const scene::Material& material)
         out.damping_mns_m = to_u32(*material.damping_ns_m * 1e3);
         out.effects |= PHANTOM_EFFECT_DAMPING;
     }
+    out.effects |= table_effects(material);
     return out;
 }
 
@@ -115,7 +117,7 @@ SetBuilder::SetBuilder(const scene::Scene& scene, std::uint32_t patches_max)
 {
 }
 
-void SetBuilder::begin(const std::array<double, 3>& centre_mm, device::PatchSet& out) const
+void SetBuilder::begin(const std::array<double, 3>& centre_mm, device::PatchSet& out)
 {
     out.header = {};
     for (int axis = 0; axis < 3; ++axis)
@@ -123,6 +125,7 @@ void SetBuilder::begin(const std::array<double, 3>& centre_mm, device::PatchSet&
     out.patches.clear();
     out.materials.clear();
     out.objects.clear();
+    claimed_.clear();
 }
 
 bool SetBuilder::claim(std::uint32_t object, device::PatchSet& out)
@@ -136,6 +139,7 @@ bool SetBuilder::claim(std::uint32_t object, device::PatchSet& out)
     if (new_material) {
         material_slot_[material] = static_cast<std::uint32_t>(out.materials.size());
         out.materials.push_back(material_of(scene_.materials[material]));
+        claimed_.push_back(material);
     }
     if (new_object) {
         object_slot_[object] = static_cast<std::uint32_t>(out.objects.size());
@@ -226,6 +230,7 @@ void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, de
 {
     const std::array<std::int64_t, 3> origin_nm = {out.header.origin_nm[0], out.header.origin_nm[1],
                                                    out.header.origin_nm[2]};
+    out.effect_tables = effect_tables(scene_, claimed_);
     out.patches.reserve(faces.size());
     for (const auto& [object, face] : faces) {
         const phantom_patch entry = patch(object, face, origin_nm);
@@ -300,9 +305,11 @@ void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<d
         ++rims_from_[needed.hits];
 }
 
-void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
-                       double coverage_mm, device::PatchSet& out)
+void SetBuilder::build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm,
+                       device::PatchSet& out)
 {
+    const std::vector<fdh::Hit>& hits = nearest.hits;
+    double coverage_mm = nearest.coverage;
     begin(centre_mm, out);
     faces_.clear();
     for (const fdh::Hit& hit : hits)
@@ -312,7 +319,7 @@ void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<doubl
     for (std::size_t i = 0; i < hits.size(); ++i) {
         patches += 1 + scene_.objects[hits[i].object].fans.of(hits[i].triangle).size() + rims_from_[i + 1];
         if (patches > patches_max_ || !claim(hits[i].object, out)) {
-            coverage_mm = std::min(coverage_mm, hits[i].distance);
+            coverage_mm = std::clamp(hits[i].distance - nearest.distance_error, 0.0, coverage_mm);
             faces_.resize(i);
             break;
         }
@@ -323,6 +330,7 @@ void SetBuilder::build(const std::vector<fdh::Hit>& hits, const std::array<doubl
     release(faces_);
     out.materials.clear();
     out.objects.clear();
+    claimed_.clear();
     for (const auto& [object, face] : faces_)
         claim(object, out);
     fill(faces_, out);

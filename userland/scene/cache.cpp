@@ -50,7 +50,7 @@ struct Numbers {
     double error_mm;
     std::uint64_t rim_loops;
     std::array<double, 3> tree_origin;
-    double tree_step;
+    double tree_step, tree_longest_edge, tree_spread;
     std::uint64_t tree_triangles;
 };
 
@@ -112,8 +112,9 @@ class Loader {
         const auto leaves = file_.find<std::byte>(base_ + tree_leaves);
         if (!complete_ || !nodes || !leaves)
             return false;
-        out.tree = fdh::TriangleTree<14>::open(
-            {one.tree_origin, one.tree_step, one.tree_triangles, *nodes, *leaves}, file_.keeper());
+        out.tree = fdh::TriangleTree<14>::open({one.tree_origin, one.tree_step, one.tree_longest_edge,
+                                                one.tree_spread, one.tree_triangles, *nodes, *leaves},
+                                               file_.keeper());
         const std::size_t count = out.mesh.faces.size();
         return out.tree && out.tree->triangles() == count && out.mesh.face_normals.size() == count &&
                out.mesh.neighbours.size() == count &&
@@ -139,7 +140,8 @@ class Loader {
 Numbers numbers_of(const Surface& surface)
 {
     const fdh::TreeImage tree = surface.tree->image();
-    return {surface.error_mm, surface.rims.loops, tree.origin, tree.step, tree.triangles};
+    return {surface.error_mm,  surface.rims.loops, tree.origin,   tree.step,
+            tree.longest_edge, tree.spread,        tree.triangles};
 }
 
 void add_surface(const Surface& surface, const Numbers& one, std::uint32_t level, SectionWriter& out)

@@ -81,7 +81,6 @@ std::vector<float> coverage_at(const fdh::SceneTree<14>& tree, std::span<const V
     fdh::parallel_for(0, points_mm.size(), fdh::thread_count(0), [&](std::size_t begin, std::size_t end) {
         fdh::Nearest nearest;
         for (std::size_t i = begin; i < end; ++i) {
-            nearest.clear();
             tree.nearest(points_mm[i], budget, coverage_max_mm, nearest);
             out[i] = static_cast<float>(nearest.coverage);
         }

@@ -17,6 +17,13 @@ inline constexpr Range stiffness_n_mm{0.001, 1000.0, "0.001 ... 1000 N/mm"};
 // Patches of a set are in nm in 32 bits round its origin: 100 mm leaves room for the faces themselves.
 inline constexpr Range radius_mm{0.001, 100.0, "0.001 ... 100 mm"};
 inline constexpr Range damping_ns_m{0.0, 1000.0, "0 ... 1000 N*s/m"};
+// What the module takes: phantom_abi.h.
+inline constexpr Range effect_force_n{0.0, 100.0, "0 ... 100 N"};
+inline constexpr Range effect_stiffness_n_mm{0.001, 100.0, "0.001 ... 100 N/mm"};
+inline constexpr Range friction{0.0, 4.0, "0 ... 4"};
+inline constexpr Range stribeck_mm_s{0.0, 1000.0, "0 ... 1000 mm/s"};
+inline constexpr Range amplitude_mm{1e-6, 100.0, "0.000001 ... 100 mm"};
+inline constexpr Range wavelength_mm{0.02, 1000.0, "0.02 ... 1000 mm"};
 inline constexpr Range length_mm{1e-6, 1e6, "0.000001 ... 1000000 mm"};
 inline constexpr Range chord_mm{1e-6, 1e4, "0.000001 ... 10000 mm"};
 inline constexpr Range position_mm{-1e6, 1e6, "-1000000 ... 1000000 mm"};

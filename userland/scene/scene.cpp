@@ -49,18 +49,40 @@ double Scene::max_radius_mm() const
     return radius;
 }
 
+namespace {
+
+struct EffectName {
+    const char* name;
+    bool (*called_for)(const Material& material);
+};
+
+constexpr EffectName effect_names[] = {
+    {"damping", [](const Material& material) { return material.damping_ns_m.has_value(); }},
+    {"magnet", [](const Material& material) { return material.magnet.has_value(); }},
+    {"friction", [](const Material& material) { return material.friction.has_value(); }},
+    {"texture", [](const Material& material) { return material.texture.has_value(); }},
+};
+
 // A material that no object has calls for nothing.
+std::vector<std::string> effects(const std::vector<Material>& materials, bool called_for)
+{
+    std::vector<std::string> out;
+    for (const EffectName& effect : effect_names)
+        if (std::any_of(materials.begin(), materials.end(), effect.called_for) == called_for)
+            out.emplace_back(effect.name);
+    return out;
+}
+
+} // namespace
+
 std::vector<std::string> Scene::effects_called_for() const
 {
-    const bool damping = std::any_of(materials.begin(), materials.end(), [](const Material& material) {
-        return material.damping_ns_m.has_value();
-    });
-    return damping ? std::vector<std::string>{"damping"} : std::vector<std::string>{};
+    return effects(materials, true);
 }
 
 std::vector<std::string> Scene::effects_not_called_for() const
 {
-    return effects_called_for().empty() ? std::vector<std::string>{"damping"} : std::vector<std::string>{};
+    return effects(materials, false);
 }
 
 } // namespace phantom::scene

@@ -16,14 +16,19 @@
 #include "mesh/prepare.hpp"
 #include "mesh/rims.hpp"
 #include "scene/cache_key.hpp"
+#include "scene/effects.hpp"
 
 namespace phantom::scene {
 
 struct Material {
     std::string name = "default";
-    double stiffness_n_mm = 1.0;          ///< k
-    double radius_mm = 1.0;               ///< R, contact radius
-    std::optional<double> damping_ns_m{}; ///< N*s/m; the effect is called for only when named
+    double stiffness_n_mm = 1.0; ///< k
+    double radius_mm = 1.0;      ///< R, contact radius
+    /// Effects are called for only when named.
+    std::optional<double> damping_ns_m{}; ///< N*s/m
+    std::optional<Magnet> magnet{};
+    std::optional<Friction> friction{};
+    std::optional<Texture> texture{};
 };
 
 /// What can be touched of an object: its mesh, and what was made of it. A copy shares all arrays.
@@ -79,7 +84,8 @@ struct Scene {
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
     [[nodiscard]] double max_radius_mm() const;
-    /// Names of the effects that some material calls for ("damping"), and of those that none does.
+    /// Names of the effects that some material calls for ("damping", "friction"), and of those that none
+    /// does.
     [[nodiscard]] std::vector<std::string> effects_called_for() const;
     [[nodiscard]] std::vector<std::string> effects_not_called_for() const;
 };

@@ -11,6 +11,7 @@
 
 #include "mesh/read.hpp"
 #include "mesh/vector.hpp"
+#include "scene/effects_file.hpp"
 #include "scene/shapes/shape_keys.hpp"
 #include "scene/toml_reader.hpp"
 #include "scene/units.hpp"
@@ -182,7 +183,9 @@ ObjectEntry read_object(TomlReader& object, const std::string& path, const std::
 
 Material read_material(const std::string& name, const toml::table& table, Faults& faults)
 {
-    TomlReader reader(table, "material." + name + ".", {"stiffness_n_mm", "radius_mm", "damping_ns_m"},
+    const std::string path = "material." + name + ".";
+    TomlReader reader(table, path,
+                      {"stiffness_n_mm", "radius_mm", "damping_ns_m", "magnet", "friction", "texture"},
                       faults);
     Material material;
     material.name = name;
@@ -190,6 +193,7 @@ Material read_material(const std::string& name, const toml::table& table, Faults
         reader.number("stiffness_n_mm", range::stiffness_n_mm).value_or(material.stiffness_n_mm);
     material.radius_mm = reader.number("radius_mm", range::radius_mm).value_or(material.radius_mm);
     material.damping_ns_m = reader.number("damping_ns_m", range::damping_ns_m);
+    read_effects(reader, path, faults, material);
     return material;
 }
 

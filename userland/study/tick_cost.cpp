@@ -227,7 +227,8 @@ Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14
     for (const Vec3& point : points_near_surface(scene, sets, 1)) {
         near.clear();
         tree.nearest(point, budget, search.search_radius_mm, near);
-        builder.build(near.hits, point, near.coverage, set);
+        near.sort();
+        builder.build(near, point, set);
         if (set.patches.empty())
             continue;
         cost.patches = std::max(cost.patches, static_cast<std::uint32_t>(set.patches.size()));

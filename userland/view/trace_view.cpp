@@ -47,6 +47,7 @@ Result<Moment> moment_of(const Trace& trace, const Options& options, const scene
     moment.touch = trace.rows[moment.row];
     const auto tree = scene::build_tree<14>(scene);
     tree.nearest(moment.touch.query_centre_mm(), selected_triangles, search_radius_mm, moment.nearest);
+    moment.nearest.sort();
     SelectedTriangles selected;
     selected.show(moment.nearest.hits, scene);
     moment.normal = outward_normal(moment.touch, selected);

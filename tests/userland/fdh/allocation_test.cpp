@@ -46,6 +46,8 @@ TEST(AllocationTest, WarmQueriesAllocateNothing)
             scene.nearest(p, 64, 1e9, nearest);
             scene.tree(0).nearest(p, 512, 10, nearest);
             scene.within(p, 20, within);
+            scene.along(p, points[0], 5, within);
+            scene.in_box({p, {p[0] + 20, p[1] + 20, p[2] + 20}}, within);
             scene.pairs_near(0, 50, pairs);
             scene.pairs(50, pairs);
         }

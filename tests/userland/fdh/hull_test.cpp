@@ -64,7 +64,7 @@ TYPED_TEST(HullTest, ContainsEveryVertexAndIsTight)
             }
             EXPECT_LE(hull[k][0], low);
             EXPECT_GE(hull[k][1], high);
-            const double looseness = 4 * tree.accuracy(mesh.vertices[0]) + 1e-13 * std::abs(shift[0]);
+            const double looseness = 4 * tree.accuracy(mesh.vertices[0], 0) + 1e-13 * std::abs(shift[0]);
             EXPECT_GE(hull[k][0], low - looseness);
             EXPECT_LE(hull[k][1], high + looseness);
         }
@@ -83,16 +83,15 @@ TYPED_TEST(HullTest, EveryLaneContainsItsLeaf)
     for (auto& v : mesh.vertices) // into the corners of a cube
         for (double& x : v)
             x = std::copysign(30 + 2 * unit(random), x);
-    const auto data = build_tree<K>(mesh.view(), 1);
+    const auto data = build_tree<K>(mesh.view(), 1, Isa::best);
+    const Levels levels = Levels::above(data.leaves.size());
     std::size_t leaves = 0;
-    for (const auto& node : data.nodes)
-        for (int lane = 0; lane < lanes; lane++) {
-            if (!(node.child[lane] & leaf_flag))
-                continue;
-            leaves++;
-            const Leaf& leaf = data.leaves[node.child[lane] & ~leaf_flag];
+    for (std::size_t n = 0; n < levels.size[0]; n++)
+        for (int lane = 0; lane < lanes && leaves < data.leaves.size(); lane++) {
+            const Node<K>& node = data.nodes[levels.base[0] + n];
+            const Leaf& leaf = data.leaves[leaves++];
             for (int i = 0; i < lanes && leaf.triangle[i] != no_triangle; i++)
-                for (std::uint32_t vertex : mesh.triangles[leaf.triangle[i]]) {
+                for (std::uint32_t vertex : mesh.triangles[leaf.triangle[i] & ~needle_flag]) {
                     const auto corner = data.grid.round(mesh.vertices[vertex]);
                     for (int k = 0; k < K / 2; k++) {
                         const auto& d = directions[k];

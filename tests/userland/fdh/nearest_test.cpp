@@ -27,7 +27,7 @@ class NearestTest : public testing::Test {
         std::vector<Hit> within;
         for (const Point& p : probes(mesh, each, random)) {
             const auto truth = true_distances(mesh, p);
-            const double accuracy = tree.accuracy(p);
+            const Accuracy accuracy = accuracy_of(tree, p);
             auto sorted = truth;
             std::sort(sorted.begin(), sorted.end(),
                       [](const Truth& a, const Truth& b) { return a.distance < b.distance; });
@@ -109,6 +109,7 @@ TYPED_TEST(NearestTest, ExactTiesGoToTheLowestNumbers)
     const auto tree = TriangleTree<TypeParam::value>::build(mesh.view());
     Nearest found;
     tree.nearest({8, 8, 0}, 4, infinity, found);
+    found.sort();
     std::vector<std::uint32_t> at_zero;
     for (const auto& t : true_distances(mesh, {8, 8, 0}))
         if (t.distance == 0)
@@ -161,7 +162,7 @@ TYPED_TEST(NearestTest, CountZeroCoversUpToTheNearest)
     tree.nearest(p, 0, infinity, found);
     EXPECT_TRUE(found.hits.empty());
     EXPECT_LE(found.coverage, 3);
-    EXPECT_GE(found.coverage, 3 - 2 * tree.accuracy(p));
+    EXPECT_GE(found.coverage, 3 - 2 * tree.accuracy(p, 3));
     tree.nearest(p, 0, 2, found);
     EXPECT_EQ(found.coverage, 2);
 }
@@ -200,6 +201,7 @@ TYPED_TEST(NearestTest, FarthestQueryPointStillAnswers)
     Nearest found;
     for (double far : {1e12, 1e30, 1e60, largest_coordinate}) {
         tree.nearest({far, 0, 0}, 5, infinity, found);
+        found.sort();
         ASSERT_EQ(found.hits.size(), 5u);
         EXPECT_NEAR(found.hits[0].distance / far, 1, 1e-11);
         EXPECT_LE(found.coverage, found.hits[4].distance);
@@ -220,10 +222,12 @@ TYPED_TEST(NearestTest, WithinInfinityFindsEverything)
 TYPED_TEST(NearestTest, AccuracyIsFineAgainstTheMesh)
 {
     const auto tree = TriangleTree<TypeParam::value>::build(sphere(3, 60).view());
-    EXPECT_LE(tree.accuracy({0, 0, 60}), 10e-6) << "10 nm on a sphere 120 mm across";
+    EXPECT_LE(tree.accuracy({0, 0, 60}, 1), 50e-6) << "on a sphere 120 mm across, of faces 20 mm wide";
+    const auto fine = TriangleTree<TypeParam::value>::build(sphere(6, 60).view());
+    EXPECT_LE(fine.accuracy({0, 0, 60}, 1), 15e-6) << "and of faces 2.5 mm wide";
     const auto distant =
-        TriangleTree<TypeParam::value>::build(scaled(sphere(3, 60), 1, {5e9, 5e9, 5e9}).view());
-    EXPECT_LE(distant.accuracy({5e9, 5e9, 5e9 + 60}), 10e-6);
+        TriangleTree<TypeParam::value>::build(scaled(sphere(6, 60), 1, {5e9, 5e9, 5e9}).view());
+    EXPECT_LE(distant.accuracy({5e9, 5e9, 5e9 + 60}, 1), 15e-6);
 }
 
 TYPED_TEST(NearestTest, ThreadsQueryOneTreeAtOnce)

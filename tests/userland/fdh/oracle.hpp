@@ -3,6 +3,7 @@
 // satisfy.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -30,12 +31,21 @@ std::vector<Truth> true_distances(const Mesh& mesh, const Point& p);
 /// middle.
 std::vector<Point> probes(const Mesh& mesh, std::size_t each, std::mt19937_64& random);
 
-/// What query.hpp promises of "the N nearest", and that it gives as much as it can; `accuracy` is the bound
-/// of the error of a distance.
+/// How far a reported distance of this size may be from the true one.
+using Accuracy = std::function<double(double distance)>;
+
+template <int K>
+Accuracy accuracy_of(const TriangleTree<K>& tree, const Point& p)
+{
+    return [tree, p](double distance) { return tree.accuracy(p, distance); };
+}
+
+/// What query.hpp promises of "the N nearest", and that it gives as much as it can; `accuracy` bounds the
+/// error of a distance.
 void expect_nearest(std::vector<Truth> truth, const Nearest& found, std::size_t count, double radius,
-                    double accuracy);
+                    const Accuracy& accuracy);
 /// What tree.hpp promises of "all within".
 void expect_within(const std::vector<Truth>& truth, const std::vector<Hit>& found, double radius,
-                   double accuracy);
+                   const Accuracy& accuracy);
 
 } // namespace phantom::fdh::test

@@ -104,12 +104,12 @@ TYPED_TEST(PairsTest, NoneIsMissedWhileObjectsMove)
 {
     std::mt19937_64 random(41);
     Scene<TypeParam::value> scene;
-    for (int i = 0; i < 16; i++)
+    for (int i = 0; i < 9; i++)
         scene.add(soup(3, 8, random), random_pose(20, random));
-    for (int round = 0; round < 3; round++) {
+    for (int round = 0; round < 2; round++) {
         scene.tree.update();
         scene.check({0, 0.5, 4, 15});
-        for (std::uint32_t object = round; object < 16; object += 2)
+        for (std::uint32_t object = round; object < 9; object += 2)
             scene.tree.set_pose(object, random_pose(20, random));
     }
 }
@@ -232,6 +232,106 @@ TEST(PairsTest, TheToolMeetsItsNeighboursOnly)
             EXPECT_LE(pair.at_least, 2);
         }
     }
+}
+
+// Triangle by triangle, down from both trees.
+TYPED_TEST(PairsTest, TrianglePairsMatchBruteForce)
+{
+    constexpr int K = TypeParam::value;
+    std::mt19937_64 random(151);
+    Scene<K> scene;
+    const Mesh faces = degenerate_faces(random);
+    Mesh needles;
+    for (std::size_t i = 0; i < 8; i++) {
+        const Corners t = corners(faces, i);
+        needles.add(t[0], t[1], t[2]);
+    }
+    scene.add(soup(16, 5, random), random_pose(1, random));
+    scene.add(scaled(needles, 0.1, {0, 0, 0}), random_pose(1, random));
+    scene.add(scaled(sphere(1, 3), 1, {30, 0, 0}), {{0, -1, 0, 1, 0, 0, 0, 0, 1}, {0, -28, 0}});
+    scene.add(flat_grid(3), {});
+    scene.add({}, {});
+    scene.tree.update();
+    std::vector<TrianglePair> found;
+    std::size_t total = 0;
+    for (std::uint32_t i = 0; i < 5; i++)
+        for (std::uint32_t j = 0; j < 5; j++) {
+            if (i == j || (i < j) == ((i + j) % 2 == 0)) // either order, by turns
+                continue;
+            const Mesh a = posed(scene.meshes[i], scene.tree.pose(i)),
+                       b = posed(scene.meshes[j], scene.tree.pose(j));
+            const double distance = (i + j) % 3 == 0 ? 0 : (i + j) % 3 == 1 ? 0.2 : 1;
+            const double error =
+                scene.tree.tree(i).accuracy({0, 0, 0}, 0) + scene.tree.tree(j).accuracy({0, 0, 0}, 0);
+            scene.tree.triangle_pairs(i, j, distance, found);
+            total += found.size();
+            std::vector<double> given(a.triangles.size() * b.triangles.size(), -1);
+            for (const TrianglePair& pair : found) {
+                double& place = given.at(pair.first * b.triangles.size() + pair.second);
+                EXPECT_EQ(place, -1) << "twice";
+                place = pair.distance;
+            }
+            for (std::size_t s = 0; s < a.triangles.size(); s++)
+                for (std::size_t t = 0; t < b.triangles.size(); t++) {
+                    const double answer = given[s * b.triangles.size() + t];
+                    if (answer < 0 && sphere_bound(corners(a, s), corners(b, t)) > distance)
+                        continue;
+                    const auto truth = static_cast<double>(true_distance(corners(a, s), corners(b, t)));
+                    ASSERT_GE(truth, answer < 0 ? distance : 0) << "missed";
+                    ASSERT_LE(truth, answer < 0 ? infinity : distance + 2 * error);
+                    ASSERT_NEAR(answer < 0 ? truth : answer, truth, error);
+                }
+        }
+    EXPECT_GT(total, 40u);
+}
+
+// Two that share a corner, each in a grid of its own that rounds it; and sheets that are a hair too far
+// apart.
+TYPED_TEST(PairsTest, TrianglePairsThatTouchAreFoundAndNoneBeyondTheBound)
+{
+    constexpr int K = TypeParam::value;
+    std::mt19937_64 random(157);
+    Scene<K> scene;
+    std::vector<TrianglePair> found;
+    Mesh corner = soup(1, 10, random);
+    for (std::uint32_t i = 0; i < 60; i++) {
+        Mesh fan = soup(1, 10, random);
+        fan.vertices[0] = corner.vertices[0];
+        scene.add(fan, {});
+    }
+    scene.tree.update();
+    for (std::uint32_t i = 1; i < 60; i++) {
+        scene.tree.triangle_pairs(0, i, 0, found);
+        EXPECT_EQ(found.size(), 1u) << i;
+    }
+    Scene<K> sheets;
+    sheets.add(flat_grid(6), {});
+    sheets.add(flat_grid(5), {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.3, 0.2, 2}});
+    sheets.tree.update();
+    const double error =
+        sheets.tree.tree(0).accuracy({0, 0, 0}, 0) + sheets.tree.tree(1).accuracy({0, 0, 0}, 0);
+    sheets.tree.triangle_pairs(0, 1, 2 - 2.01 * error, found);
+    EXPECT_TRUE(found.empty());
+    sheets.tree.triangle_pairs(0, 1, 2, found);
+    EXPECT_GT(found.size(), 50u);
+}
+
+TEST(PairsTest, TrianglePairsOfThousandsAreThoseThatTouch)
+{
+    // Two balls, side by side: a point of each touches the other.
+    SceneTree<14> scene;
+    const auto ball = TriangleTree<14>::build(sphere(5, 10).view());
+    scene.add(ball, {});
+    scene.add(ball, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {20, 0, 0}});
+    scene.update();
+    std::vector<TrianglePair> found;
+    scene.triangle_pairs(0, 1, 0, found);
+    EXPECT_EQ(found.size(), 16u) << "four triangles at either point";
+    for (const TrianglePair& pair : found)
+        EXPECT_LE(pair.distance, 1e-5);
+    scene.triangle_pairs(0, 1, -1, found);
+    EXPECT_TRUE(found.empty());
+    EXPECT_THROW(scene.triangle_pairs(0, 2, 1, found), std::out_of_range);
 }
 
 } // namespace phantom::fdh::test

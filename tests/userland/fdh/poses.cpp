@@ -86,27 +86,19 @@ std::pair<Point, double> sphere_round(const Corners& t)
 
 } // namespace
 
-long double true_distance(const Point& from, const Point& to, const Corners& triangle)
+long double true_distance(const Segment& segment, const Corners& triangle)
 {
+    const auto& [from, to] = segment;
     const Wide p = {from[0], from[1], from[2]}, q = {to[0], to[1], to[2]};
-    // Golden section: one new value per step.
+    // Golden section. Both values anew in each step: a reused place drifts from where it should lie.
     const long double part = (std::sqrt(5.0L) - 1) / 2;
-    long double low = 0, high = 1, x = 1 - part, y = part;
-    long double at_x = distance_at(p, q, x, triangle), at_y = distance_at(p, q, y, triangle);
+    long double low = 0, high = 1;
     long double best = std::min(distance_at(p, q, 0, triangle), distance_at(p, q, 1, triangle));
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 92; i++) { // 0.618^92 is 6e-20
+        const long double x = high - part * (high - low), y = low + part * (high - low);
+        const long double at_x = distance_at(p, q, x, triangle), at_y = distance_at(p, q, y, triangle);
         best = std::min({best, at_x, at_y});
-        if (at_x < at_y) {
-            high = std::exchange(y, x);
-            at_y = at_x;
-            x = high - part * (high - low);
-            at_x = distance_at(p, q, x, triangle);
-        } else {
-            low = std::exchange(x, y);
-            at_x = at_y;
-            y = low + part * (high - low);
-            at_y = distance_at(p, q, y, triangle);
-        }
+        (at_x < at_y ? high : low) = at_x < at_y ? y : x;
     }
     return best;
 }
@@ -115,9 +107,16 @@ long double true_distance(const Corners& a, const Corners& b)
 {
     long double best = INFINITY;
     for (int i = 0; i < 3; i++)
-        best =
-            std::min({best, true_distance(a[i], a[(i + 1) % 3], b), true_distance(b[i], b[(i + 1) % 3], a)});
+        best = std::min({best, true_distance(Segment{a[i], a[(i + 1) % 3]}, b),
+                         true_distance(Segment{b[i], b[(i + 1) % 3]}, a)});
     return best;
+}
+
+double sphere_bound(const Corners& a, const Corners& b)
+{
+    const auto [p, r] = sphere_round(a);
+    const auto [q, s] = sphere_round(b);
+    return length(minus(p, q)) * (1 - 1e-12) - (r + s) * (1 + 1e-12);
 }
 
 long double true_distance(const Mesh& a, const Mesh& b, long double cutoff)
@@ -126,9 +125,7 @@ long double true_distance(const Mesh& a, const Mesh& b, long double cutoff)
     for (std::size_t i = 0; i < a.triangles.size(); i++)
         for (std::size_t j = 0; j < b.triangles.size(); j++) {
             const Corners s = corners(a, i), t = corners(b, j);
-            const auto [p, r] = sphere_round(s);
-            const auto [q, u] = sphere_round(t);
-            if (std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) * (1 + 1e-12) - r - u < best)
+            if (sphere_bound(s, t) < best)
                 best = std::min(best, true_distance(s, t));
         }
     return best;

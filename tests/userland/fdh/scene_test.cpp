@@ -35,11 +35,11 @@ struct Scene {
         return all;
     }
     /// Of the worst object, and the rounding of world coordinates to double here.
-    [[nodiscard]] double accuracy(const Point& p) const
+    [[nodiscard]] double accuracy(const Point& p, double distance) const
     {
         double worst = 0, reach = 0;
         for (std::uint32_t object = 0; object < meshes.size(); object++) {
-            worst = std::max(worst, tree.tree(object).accuracy(to_local(tree.pose(object), p)));
+            worst = std::max(worst, tree.tree(object).accuracy(to_local(tree.pose(object), p), distance));
             for (double x : tree.pose(object).translation)
                 reach = std::max(reach, std::abs(x));
         }
@@ -49,7 +49,7 @@ struct Scene {
     void check(const Point& p)
     {
         const auto expected = truth(p);
-        const double error = accuracy(p);
+        const Accuracy error = [&](double distance) { return accuracy(p, distance); };
         Nearest nearest;
         std::vector<Hit> within;
         for (std::size_t count : {1, 64, 300})
@@ -143,6 +143,7 @@ TYPED_TEST(SceneTest, EqualObjectsTieByObjectThenTriangle)
     scene.update();
     Nearest found;
     scene.nearest({2, 2, 0}, 50, infinity, found); // six triangles of each at distance 0
+    found.sort();
     ASSERT_EQ(found.hits.size(), 50u);
     for (std::size_t i = 0; i < 50; i++) {
         EXPECT_EQ(found.hits[i].object, i / 6);

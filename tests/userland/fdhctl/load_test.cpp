@@ -183,7 +183,7 @@ TEST_F(Load, ASetOfCommandsAnswersInJson)
     const json facts = json::parse(info.out);
     EXPECT_EQ(facts["triangles"], 2208);
     EXPECT_TRUE(facts["objects"][0]["report"]["watertight"].get<bool>());
-    EXPECT_EQ(facts["effects"]["not_called_for"], json::array({"damping"}));
+    EXPECT_EQ(facts["effects"]["not_called_for"], json::array({"damping", "magnet", "friction", "texture"}));
     EXPECT_GT(facts["tick"]["median_ns"].get<double>(), 0);
 
     const Outcome prepared = run({"prepare", mesh, "-o", path("out.ply"), "--fit", "50", "--json"});

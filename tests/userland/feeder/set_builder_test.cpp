@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "feeder/feeder.hpp"
+#include "mesh/nearest_on_triangle.hpp"
 #include "scenes.hpp"
 
 namespace phantom::test {
@@ -25,6 +26,15 @@ scene::Scene two_spheres()
     return scene;
 }
 
+/// As a query might answer, exactly.
+fdh::Nearest answer(std::vector<fdh::Hit> hits, double coverage)
+{
+    fdh::Nearest nearest;
+    nearest.hits = std::move(hits);
+    nearest.coverage = coverage;
+    return nearest;
+}
+
 struct Built {
     scene::Scene scene = two_spheres();
     fdh::SceneTree<14> tree = scene::build_tree<14>(scene);
@@ -34,15 +44,19 @@ struct Built {
 
     void at(const Vector& centre, std::size_t count)
     {
-        near.clear();
         tree.nearest(centre, count, 50.0, near);
-        builder.build(near.hits, centre, near.coverage, set);
+        near.sort();
+        builder.build(near, centre, set);
     }
     /// A corner of a patch, in the world, as the scene has it.
-    Vector corner(const phantom_patch& patch, int corner) const
+    Vector corner(const phantom_patch& patch, int corner_number) const
     {
         const scene::Object& object = scene.objects[patch.face >= scene.objects[1].first_face ? 1 : 0];
-        const Vector& v = object.mesh.vertices[object.mesh.faces[patch.face - object.first_face][corner]];
+        return corner(object, patch.face - object.first_face, corner_number);
+    }
+    static Vector corner(const scene::Object& object, std::uint32_t face, int corner_number)
+    {
+        const Vector& v = object.mesh.vertices[object.mesh.faces[face][corner_number]];
         const auto& r = object.pose.rotation;
         Vector out = object.pose.translation;
         for (int row = 0; row < 3; ++row)
@@ -109,7 +123,7 @@ TEST(SetBuilder, ANormalWithoutDirectionBecomesTheFacesOwn)
     add_object(scene, mesh, {}, 0);
     feeder::SetBuilder builder(scene);
     device::PatchSet set;
-    builder.build({{0, 0, 0.0}}, {0, 0, 0}, 1.0, set);
+    builder.build(answer({{0, 0, 0.0}}, 1.0), {0, 0, 0}, set);
     ASSERT_EQ(set.patches.size(), 1U);
     for (int corner = 0; corner < 3; ++corner)
         EXPECT_EQ(set.patches[0].normal_q30[corner][2], PHANTOM_Q30_ONE);
@@ -174,12 +188,48 @@ TEST(SetBuilder, OnlyMaterialsThatAreUsedAreCarriedWithTheirEffects)
     EXPECT_EQ(built.set.materials[0].effects, 0U);
 }
 
+TEST(SetBuilder, EffectsHaveTheirTablesAndTheModuleTakesThem)
+{
+    Built built;
+    scene::Material& left = built.scene.materials[built.scene.objects[0].material];
+    scene::Material& right = built.scene.materials[built.scene.objects[1].material];
+    left.friction = scene::Friction{0.6, 0.4, 2, 10};
+    right.friction = scene::Friction{0.3, 0.2, 1, 0};
+    right.magnet = scene::Magnet{0.25, 0.1};
+    right.texture = scene::Texture{0.05, 2, {0, -1, 0}};
+    Result<device::Device> device = device::Device::open_usermode({.virtual_clock = true});
+    ASSERT_TRUE(device);
+    built.at(between, 100);
+    const phantom_magnet magnet{250'000, 100'000};
+    const phantom_friction first{600'000, 400'000, 2000, 10'000}, second{300'000, 200'000, 1000, 0};
+    const phantom_texture texture{{50'000, 0}, {{0, -500'000, 0}, {0, 0, 0}}};
+    std::vector<std::uint64_t> expected;
+    const auto add = [&expected](const auto& entry) {
+        const std::size_t before = expected.size();
+        expected.resize(before + sizeof entry / sizeof(std::uint64_t));
+        std::memcpy(&expected[before], &entry, sizeof entry);
+    };
+    add(magnet);
+    add(first);
+    add(second);
+    add(texture);
+    EXPECT_EQ(built.set.effect_tables, expected);
+    EXPECT_TRUE(device->submit(built.set));
+    EXPECT_EQ(built.set.header.effects & ~PHANTOM_EFFECT_DAMPING,
+              PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION | PHANTOM_EFFECT_TEXTURE);
+    // Only the first sphere's, where it is alone.
+    built.at({-20.5, 0, 0}, 20);
+    expected.clear();
+    add(first);
+    EXPECT_EQ(built.set.effect_tables, expected);
+    EXPECT_TRUE(device->submit(built.set));
+}
+
 TEST(SetBuilder, CoverageHoldsAgainstBruteForce)
 {
     Built built;
     std::mt19937 random(5);
     std::uniform_real_distribution<double> coordinate(-30, 70);
-    std::vector<fdh::Hit> all;
     for (int round = 0; round < 200; ++round) {
         const Vector centre{coordinate(random), coordinate(random) / 3, coordinate(random) / 3};
         built.at(centre, 40);
@@ -190,12 +240,15 @@ TEST(SetBuilder, CoverageHoldsAgainstBruteForce)
         for (const phantom_patch& patch : built.set.patches)
             faces.push_back(patch.face);
         // Every triangle that the whole scene has within the promise is there.
-        all.clear();
-        built.tree.within(centre, covered_mm, all);
-        for (const fdh::Hit& hit : all) {
-            const std::uint32_t face = built.scene.objects[hit.object].first_face + hit.triangle;
-            EXPECT_EQ(std::count(faces.begin(), faces.end(), face), 1) << "face " << face;
-        }
+        for (const scene::Object& object : built.scene.objects)
+            for (std::uint32_t face = 0; face < object.mesh.faces.size(); ++face) {
+                std::array<mesh::Vec3, 3> x;
+                for (int i = 0; i < 3; ++i)
+                    x[i] = Built::corner(object, face, i);
+                if (mesh::distance_to_triangle(centre, x) < covered_mm) {
+                    EXPECT_EQ(std::count(faces.begin(), faces.end(), object.first_face + face), 1);
+                }
+            }
     }
 }
 
@@ -204,10 +257,10 @@ TEST(SetBuilder, TheOrderOfTheHitsChangesNoBit)
     Built built;
     built.at(between, 60);
     const auto expected = built.set.patches;
-    auto hits = built.near.hits;
+    fdh::Nearest near = built.near;
     std::mt19937 random(6);
-    std::shuffle(hits.begin(), hits.end(), random);
-    built.builder.build(hits, between, built.near.coverage, built.set);
+    std::shuffle(near.hits.begin(), near.hits.end(), random);
+    built.builder.build(near, between, built.set);
     ASSERT_EQ(built.set.patches.size(), expected.size());
     EXPECT_EQ(std::memcmp(built.set.patches.data(), expected.data(), expected.size() * sizeof(phantom_patch)),
               0);
@@ -224,13 +277,15 @@ TEST(SetBuilder, TooManyMaterialsEndTheCoverageAtTheFirstLeftOut)
     }
     feeder::SetBuilder builder(scene);
     device::PatchSet set;
-    builder.build(hits, {0, 0, 0}, 100.0, set);
+    fdh::Nearest near = answer(hits, 100.0);
+    near.distance_error = 0.25;
+    builder.build(near, {0, 0, 0}, set);
     EXPECT_EQ(set.materials.size(), std::size_t{PHANTOM_MATERIALS_MAX});
     EXPECT_EQ(set.patches.size(), std::size_t{PHANTOM_MATERIALS_MAX});
-    EXPECT_LE(set.header.radius_nm, 8000000U);
-    EXPECT_GE(set.header.radius_nm, 7999990U);
+    EXPECT_LE(set.header.radius_nm, 7750000U) << "16 half millimetres, less what they may be off by";
+    EXPECT_GE(set.header.radius_nm, 7749990U);
     // The scratch is clean: the next set knows nothing of this one.
-    builder.build({hits[17]}, {0, 0, 0}, 1.0, set);
+    builder.build(answer({hits[17]}, 1.0), {0, 0, 0}, set);
     ASSERT_EQ(set.materials.size(), 1U);
     EXPECT_EQ(set.patches[0].material, 0U);
 }
@@ -298,7 +353,8 @@ TEST(SetBuilder, TooManyPatchesEndTheCoverageAtTheFirstFaceLeftOut)
     fdh::Nearest near;
     tree.nearest({107, 0, 0}, 12, 50.0, near);
     device::PatchSet set;
-    builder.build(near.hits, {107, 0, 0}, near.coverage, set);
+    near.sort();
+    builder.build(near, {107, 0, 0}, set);
     EXPECT_LE(set.patches.size(), 20U);
     const auto faces = std::count_if(set.patches.begin(), set.patches.end(),
                                      [](const phantom_patch& p) { return p.kind == PHANTOM_PATCH_FACE; });

@@ -150,9 +150,9 @@ TEST(SetRims, AreInEverySetThatHasASurfaceNearThem)
         for (const std::size_t budget : {1U, 9U, 64U, 512U}) {
             for (int i = 0; i < 25; ++i) {
                 const Vector centre{place(random), place(random), height(random)};
-                near.clear();
                 tree.nearest(centre, budget, 50.0, near);
-                builder.build(near.hits, centre, near.coverage, set);
+                near.sort();
+                builder.build(near, centre, set);
                 ASSERT_LE(set.patches.size(), patches_max);
                 EXPECT_LE(set.header.radius_nm * 1e-6, near.coverage);
                 const auto faces = static_cast<std::size_t>(
@@ -178,7 +178,8 @@ TEST(SetRims, AreWellMadeAndEachThereOnce)
     device::PatchSet set;
     fdh::Nearest near;
     tree.nearest({19, 10, 1}, 100, 50.0, near);
-    builder.build(near.hits, {19, 10, 1}, near.coverage, set);
+    near.sort();
+    builder.build(near, {19, 10, 1}, set);
     std::vector<std::array<std::uint32_t, 2>> seen;
     for (std::size_t i = 0; i < set.patches.size(); ++i) {
         const phantom_patch& patch = set.patches[i];

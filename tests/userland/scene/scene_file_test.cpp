@@ -46,6 +46,9 @@ TEST(SceneFile, SoundFileLoads)
             "}\n"
             "[[object]]\nshape = \"box\"\nsize_mm = [10, 20, 30]\n[object.pose]\nquaternion = [1, 0, 0, 0]\n"
             "[material.soft]\nstiffness_n_mm = 0.5\nradius_mm = 2\ndamping_ns_m = 3\n"
+            "[material.soft.magnet]\nrange_mm = 0.5\nforce_n = 0.3\n"
+            "[material.soft.friction]\nstatic = 0.6\ndynamic = 0.4\nstiffness_n_mm = 2\nstribeck_mm_s = 10\n"
+            "[material.soft.texture]\namplitude_mm = 0.05\nwavelength_mm = 1\ndirection = [1, 1, 0]\n"
             "[device]\nmax_force_n = 3.3\nslew_n_per_ms = 1\nramp_ms = 250\n"
             "[servo]\nrate_hz = 3000\nmodel = \"projected\"\ncombine = \"bounded\"\n"
             "proxy = \"constrained\"\narith = \"float\"\nsteps = 2\ncrossfade_ms = 50\n"),
@@ -64,7 +67,10 @@ TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
               "radius_mm, tube_radius_mm, chord_mm");
     EXPECT_EQ(below_object("[material.soft]\nstifness_n_mm = 1\n"),
               "a.toml:5: material.soft.stifness_n_mm: unknown key, expected stiffness_n_mm, radius_mm, "
-              "damping_ns_m");
+              "damping_ns_m, magnet, friction, texture");
+    EXPECT_EQ(below_object("[material.soft.friction]\nsliding = 1\nstatic = 1\n"),
+              "a.toml:5: material.soft.friction.sliding: unknown key, expected static, dynamic, "
+              "stiffness_n_mm, stribeck_mm_s");
     EXPECT_EQ(below_object("[device]\nforce = 1\n"),
               "a.toml:5: device.force: unknown key, expected max_force_n, slew_n_per_ms, ramp_ms");
     EXPECT_EQ(below_object("[servo]\nrate = 1\n"),
@@ -106,6 +112,22 @@ TEST(SceneFile, ValuesOutOfRange)
               "a.toml:5: material.soft.radius_mm: is nan, expected 0.001 ... 100 mm");
     EXPECT_EQ(below_object("[material.soft]\ndamping_ns_m = -1\n"),
               "a.toml:5: material.soft.damping_ns_m: is -1, expected 0 ... 1000 N*s/m");
+    EXPECT_EQ(below_object("[material.soft.magnet]\nforce_n = 1\n"),
+              "a.toml:4: material.soft.magnet.range_mm: is missing, expected 0.000001 ... 1000000 mm");
+    EXPECT_EQ(
+        below_object("[material.soft.magnet]\nrange_mm = 1\nforce_n = 1\n"),
+        "a.toml:5: material.soft.magnet.range_mm: is 1, expected less than the material's radius_mm, 1");
+    EXPECT_EQ(below_object("[material.soft.friction]\nstatic = 0.5\ndynamic = 0.6\n"),
+              "a.toml:6: material.soft.friction.dynamic: is 0.6, expected no more than static, 0.5");
+    EXPECT_EQ(below_object("[material.soft.friction]\nstatic = 5\n"),
+              "a.toml:5: material.soft.friction.static: is 5, expected 0 ... 4");
+    EXPECT_EQ(
+        below_object("[material.soft.texture]\namplitude_mm = 0.2\nwavelength_mm = 1\n"),
+        "a.toml:5: material.soft.texture.amplitude_mm: is 0.2, expected at most 0.159 for waves of 1 mm");
+    EXPECT_EQ(
+        below_object("[material.soft.texture]\namplitude_mm = 0.1\nwavelength_mm = 1\ndirection = [0, 0, "
+                     "0]\n"),
+        "a.toml:7: material.soft.texture.direction: has no length, expected the way across the ribs");
     EXPECT_EQ(below_object("[servo]\nrate_hz = 500\n"),
               "a.toml:5: servo.rate_hz: is 500, expected 1000 ... 10000 Hz");
     EXPECT_EQ(below_object("[servo]\ncrossfade_ms = 0\n"),

@@ -201,10 +201,11 @@ TEST(Scene, EffectsAreCalledForByMaterialsThatNameThem)
     const std::string object = "[[object]]\nmesh = \"part.obj\"\nmaterial = \"m\"\n[material.m]\n";
     const Scene without = loaded_text(object);
     EXPECT_TRUE(without.effects_called_for().empty());
-    EXPECT_EQ(without.effects_not_called_for(), std::vector<std::string>{"damping"});
-    const Scene with = loaded_text(object + "damping_ns_m = 0\n");
-    EXPECT_EQ(with.effects_called_for(), std::vector<std::string>{"damping"});
-    EXPECT_TRUE(with.effects_not_called_for().empty());
+    EXPECT_EQ(without.effects_not_called_for(),
+              (std::vector<std::string>{"damping", "magnet", "friction", "texture"}));
+    const Scene with = loaded_text(object + "damping_ns_m = 0\n[material.m.friction]\nstatic = 0.5\n");
+    EXPECT_EQ(with.effects_called_for(), (std::vector<std::string>{"damping", "friction"}));
+    EXPECT_EQ(with.effects_not_called_for(), (std::vector<std::string>{"magnet", "texture"}));
 }
 
 TEST(Scene, DefaultMaterialMayBeDefined)

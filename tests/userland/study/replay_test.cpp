@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Recordings computed again: whatever happened in a run, the bits are the same; and what differs is found.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fcntl.h>
 #include <functional>
@@ -26,6 +28,8 @@ const scene::Scene& the_scene()
     static const scene::Scene scene = [] {
         scene::Scene made = sphere_scene();
         made.materials.front().damping_ns_m = 0.8;
+        made.materials.front().friction = scene::Friction{0.5, 0.3, 1, 20};
+        made.materials.front().texture = scene::Texture{0.02, 1, {1, 0, 0}};
         return made;
     }();
     return scene;
@@ -241,15 +245,23 @@ class RawMachine {
         fdh::Nearest nearest;
         the_tree().nearest(tip_mm, 64, 50.0, nearest);
         device::PatchSet set;
-        builder_.build(nearest.hits, tip_mm, nearest.coverage, set);
+        nearest.sort();
+        builder_.build(nearest, tip_mm, set);
         set.header.id = ++last_id_;
         set.header.patch_count = static_cast<__u32>(set.patches.size());
         set.header.material_count = static_cast<__u32>(set.materials.size());
         set.header.object_count = static_cast<__u32>(set.objects.size());
         set.header.patches = reinterpret_cast<std::uintptr_t>(set.patches.data());
-        set.header.materials = reinterpret_cast<std::uintptr_t>(set.materials.data());
+        // the tables lie behind the one material
+        struct {
+            phantom_material material;
+            std::array<std::uint64_t, 16> tables;
+        } described{set.materials.at(0), {}};
+        std::copy(set.effect_tables.begin(), set.effect_tables.end(), described.tables.begin());
+        set.header.materials = reinterpret_cast<std::uintptr_t>(&described);
         set.header.objects = reinterpret_cast<std::uintptr_t>(set.objects.data());
-        set.header.effects = PHANTOM_EFFECT_DAMPING;
+        set.header.effects = set.materials[0].effects;
+        set.header.effect_bytes = static_cast<__u32>(set.effect_tables.size() * sizeof(std::uint64_t));
         ioctl(PHANTOM_SUBMIT_SET, &set.header);
         recording.sets[last_id_] = std::move(set);
     }
@@ -391,6 +403,11 @@ TEST(Replay, AnotherInputGivesAnotherOutcome)
     EXPECT_GT(differ_after([&](Recording& r) {
                   for (auto& [id, set] : r.sets)
                       set.materials[0].damping_mns_m *= 2;
+              }),
+              20U);
+    EXPECT_GT(differ_after([&](Recording& r) {
+                  for (auto& [id, set] : r.sets)
+                      set.effect_tables.at(0) -= 100'000; // static friction, the first word of them
               }),
               20U);
     EXPECT_GT(differ_after([&](Recording& r) {

@@ -350,7 +350,8 @@ void expect_rounding_only_on_walls(const scene::Scene& scene)
         fdh::Nearest nearest;
         device::PatchSet set;
         tree.nearest(centre, count, 50, nearest);
-        builder.build(nearest.hits, centre, nearest.coverage, set);
+        nearest.sort();
+        builder.build(nearest, centre, set);
         set.header.patch_count = static_cast<std::uint32_t>(set.patches.size());
         set.header.material_count = static_cast<std::uint32_t>(set.materials.size());
         return FloatSet(ops, set);

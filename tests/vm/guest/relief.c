@@ -91,3 +91,31 @@ void relief_cut(struct relief_set* relief, uint64_t id, const int64_t tip_nm[3])
         for (int column = 0; column < RELIEF_WINDOW; column++)
             put_cell(relief, column, row, first_column, first_row);
 }
+
+void relief_feel(struct relief_set* relief)
+{
+    relief->material.damping_mns_m = 800;
+    relief->material.effects = PHANTOM_EFFECTS_SURFACE;
+    relief->set.effects = PHANTOM_EFFECTS_KNOWN;
+    relief->set.effect_bytes = sizeof(relief->tables);
+    relief->tables = (struct relief_tables){
+        .magnet = {.range_nm = 200000, .force_un = 150000},
+        .friction = {.static_ppm = 500000,
+                     .dynamic_ppm = 300000,
+                     .stiffness_mn_mm = 600,
+                     .stribeck_um_s = 30000},
+        .texture = {.amplitude_nm = {30000, 0}, .wave_per_km = {{400000, 300000, 0}, {0, 0, 0}}},
+        .constant = {.force_un = {20000, -10000, -50000}},
+        .viscosities = {.count = 1},
+        .viscosity = {.radius_nm = 12000000,
+                      .border_nm = 4000000,
+                      .viscosity_mns_m = 1500,
+                      .drag_mns2_m2 = 2000},
+        .guides = {.count = 1},
+        .guide = {.direction_q30 = {0, PHANTOM_Q30_ONE, 0},
+                  .kind = PHANTOM_GUIDE_PLANE,
+                  .stiffness_mn_mm = 20,
+                  .force_un = 200000,
+                  .reach_nm = 12000000},
+    };
+}

@@ -22,6 +22,17 @@ struct relief_set {
     struct phantom_set set;
     struct phantom_patch patches[RELIEF_PATCHES];
     struct phantom_material material;
+    /* Of effects, where they are looked for: behind the materials. relief_feel() names them. */
+    struct relief_tables {
+        struct phantom_magnet magnet;
+        struct phantom_friction friction;
+        struct phantom_texture texture;
+        struct phantom_constant constant;
+        struct phantom_effect_count viscosities;
+        struct phantom_viscosity viscosity;
+        struct phantom_effect_count guides;
+        struct phantom_guide guide;
+    } tables;
     struct phantom_object object;
 };
 
@@ -30,5 +41,7 @@ double relief_height_nm(double x_nm, double y_nm);
 /* The set round that tip, which must lie above or below the surface and at least three cells inside its rim.
  */
 void relief_cut(struct relief_set* relief, uint64_t id, const int64_t tip_nm[3]);
+/* Gives it every effect that there is. */
+void relief_feel(struct relief_set* relief);
 
 #endif /* VM_RELIEF_H */

@@ -16,8 +16,8 @@ inline constexpr const char* coherent_name = "FDH14 coherent";
 /// The same with boxes for hulls.
 inline constexpr const char* boxes_name = "FDH6";
 
-/// FDH14 first, then the same tree with narrower instruction sets that this processor runs, FDH6, FDH18 and
-/// FDH26; fewer of them for meshes of tens of millions.
+/// FDH14 first, then coherent, then both with narrower instruction sets that this processor runs; FDH6, FDH18
+/// and FDH26; fewer of them for meshes of tens of millions.
 std::vector<std::unique_ptr<Contender>> own_contenders(const Mesh& mesh);
 
 } // namespace phantom::peers

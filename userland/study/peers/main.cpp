@@ -2,9 +2,15 @@
 // peers_bench: the 64 nearest triangles, by this project's hulls and by other libraries, in one interleaved
 // run. Writes peers.csv, peers.md and peers.svg, all or none. Exit status 0, 1 (a wrong answer, a mesh or
 // file that cannot be had), 2 (usage).
+#include <fmt/format.h>
+#include <stdlib.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
 
 #include "base/output_file.hpp"
 #include "study/peers/measure.hpp"
@@ -66,7 +72,20 @@ void settle(Options& options, bool rounds_given)
     options.measure.checked = 50;
 }
 
-Result<std::vector<MeshFigures>> measure_all(Options& options)
+/// What a run takes at its peak, everyone's hierarchy at once [byte per triangle].
+constexpr double run_bytes_per_triangle = 450;
+
+double free_bytes()
+{
+    std::ifstream file("/proc/meminfo");
+    for (std::string word; file >> word;)
+        if (double kib = 0; word == "MemAvailable:" && file >> kib)
+            return 1024 * kib;
+    return std::numeric_limits<double>::max();
+}
+
+/// Meshes that there is no memory for are left out, and `note` says so.
+Result<std::vector<MeshFigures>> measure_all(Options& options, std::string& note)
 {
     std::vector<MeshFigures> all;
     for (const std::string& name : options.meshes) {
@@ -77,6 +96,12 @@ Result<std::vector<MeshFigures>> measure_all(Options& options)
         const Result<Mesh> mesh = make_mesh(name);
         if (!mesh)
             return mesh.error();
+        const double needed = run_bytes_per_triangle * static_cast<double>(mesh->triangles.size());
+        if (needed > free_bytes()) {
+            note +=
+                fmt::format("{} was left out: it needs {:.0f} GB of free memory.\n\n", name, 1e-9 * needed);
+            continue;
+        }
         Result<Field> field = field_for(*mesh, options.contenders);
         if (!field)
             return field.error();
@@ -88,12 +113,26 @@ Result<std::vector<MeshFigures>> measure_all(Options& options)
     return all;
 }
 
-Status write(const std::vector<MeshFigures>& all, const std::filesystem::path& folder)
+/// What else the machine is doing, if that matters.
+std::string load_note()
+{
+    double load = 0;
+    const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+    if (getloadavg(&load, 1) != 1 || load < 0.5 * processors)
+        return "";
+    return fmt::format(
+        "The machine was not quiet: load {:.1f} on {} processors before the run. Ratios hold; rates "
+        "on all threads are too low.\n\n",
+        load, processors);
+}
+
+Status write(const std::vector<MeshFigures>& all, const std::string& words,
+             const std::filesystem::path& folder)
 {
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     const std::pair<const char*, std::string> files[] = {
-        {"peers.csv", csv(all)}, {"peers.md", tables(all)}, {"peers.svg", chart(all)}};
+        {"peers.csv", csv(all)}, {"peers.md", words}, {"peers.svg", chart(all)}};
     std::vector<OutputFile> open;
     for (const auto& [name, text] : files) {
         Result<OutputFile> file = OutputFile::open(folder / name);
@@ -123,11 +162,13 @@ int main(int argc, char** argv)
         return code == 0 ? 0 : exit_usage;
     }
     settle(options, app.count("--rounds") > 0);
-    const Result<std::vector<MeshFigures>> all = measure_all(options);
+    std::string note = load_note();
+    const Result<std::vector<MeshFigures>> all = measure_all(options, note);
     if (!all)
         return fail(all.error());
-    if (Status status = write(*all, options.out); !status)
+    const std::string words = note + tables(*all);
+    if (Status status = write(*all, words, options.out); !status)
         return fail(status.error());
-    std::printf("%s\nwritten: %s\n", tables(*all).c_str(), (options.out / "peers.{csv,md,svg}").c_str());
+    std::printf("%s\nwritten: %s\n", words.c_str(), (options.out / "peers.{csv,md,svg}").c_str());
     return 0;
 }

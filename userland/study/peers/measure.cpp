@@ -248,6 +248,9 @@ class Run {
         if (std::ranges::none_of(field_.contenders, can))
             return success();
         say("refitting");
+        for (const auto& contender : field_.contenders)
+            if (!contender->refits())
+                contender->prepare(mesh_); // gives back what it has built
         const Mesh moved = waved(mesh_, wave_part * mesh_.diagonal);
         for (std::size_t who = 0; who < field_.contenders.size(); ++who) {
             Contender& contender = *field_.contenders[who];

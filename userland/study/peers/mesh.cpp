@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "study/peers/mesh.hpp"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -43,6 +45,19 @@ constexpr int icosahedron_faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
+/// Room for `count` elements, in large pages where the system has them: a callback that looks up a corner
+/// shall not be charged for the page tables of a mesh of 20 million triangles.
+template <typename T>
+void reserve_large_pages(std::vector<T>& elements, std::size_t count)
+{
+    constexpr std::uintptr_t page = std::uintptr_t{2} << 20;
+    elements.reserve(count);
+    const auto begin = (reinterpret_cast<std::uintptr_t>(elements.data()) + page - 1) / page * page;
+    const auto end = reinterpret_cast<std::uintptr_t>(elements.data() + count) / page * page;
+    if (begin < end)
+        madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // advice: may be declined
+}
+
 /// One triangle of the unit sphere, cut into f^2, with the bumps.
 void add_patch(Mesh& mesh, const std::array<Vec3, 3>& x, unsigned f)
 {
@@ -70,7 +85,7 @@ Mesh sphere(unsigned f)
 {
     Mesh mesh;
     mesh.vertices.reserve(std::size_t{10} * (f + 1) * (f + 2));
-    mesh.triangles.reserve(std::size_t{20} * f * f);
+    reserve_large_pages(mesh.triangles, std::size_t{20} * f * f);
     for (const auto& face : icosahedron_faces)
         add_patch(mesh, {icosahedron[face[0]], icosahedron[face[1]], icosahedron[face[2]]}, f);
     return mesh;
@@ -98,7 +113,7 @@ Mesh sphere_with_spot(unsigned f)
 Mesh finished(Mesh mesh, std::string name)
 {
     mesh.name = std::move(name);
-    mesh.points.reserve(mesh.vertices.size());
+    reserve_large_pages(mesh.points, mesh.vertices.size());
     Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
     for (fdh::Point& vertex : mesh.vertices) {
         std::array<float, 4> point{};

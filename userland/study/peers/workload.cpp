@@ -57,7 +57,10 @@ class Walker {
         return reach[radius_samples / 2];
     }
 
-    [[nodiscard]] double accuracy(const fdh::Point& p) const { return tree_.accuracy(p); }
+    [[nodiscard]] double accuracy(const fdh::Point& p, double distance) const
+    {
+        return tree_.accuracy(p, distance);
+    }
 
     void stroke(std::size_t steps, std::vector<fdh::Point>& out)
     {
@@ -104,7 +107,7 @@ Workload make_workload(const Mesh& mesh, std::size_t strokes, std::size_t steps)
         walker.stroke(steps, work.walk);
     for (std::size_t i = 0; i < strokes * steps; ++i)
         work.jump.push_back(walker.anywhere());
-    work.accuracy = walker.accuracy(work.jump.front());
+    work.accuracy = walker.accuracy(work.jump.front(), work.radius);
     return work;
 }
 

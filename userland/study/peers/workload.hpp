@@ -15,7 +15,7 @@ inline constexpr double walk_step_part = 5e-4;
 
 struct Workload {
     double radius = 0;   ///< [mm], of the median sphere round a surface point that holds 64 triangles
-    double accuracy = 0; ///< [mm], that the hull library promises for distances near the mesh
+    double accuracy = 0; ///< [mm], that the hull library promises for distances up to the radius
     std::vector<fdh::Point> walk; ///< strokes along the surface, one after the other
     std::vector<fdh::Point> jump; ///< points of random triangles
 };
