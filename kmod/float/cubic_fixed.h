@@ -139,7 +139,7 @@ static inline u32 exact_cubic(const struct block *block, u32 lane, const struct 
 /* A height in those units, and back. */
 static inline fine fine_from_real(real mm, u32 unit)
 {
-	return (fine)(((__int128)mm * 1000000 << (FINE_BITS - FIXED_BITS)) >> unit);
+	return (fine)((__int128)mm * (1000000LL << (FINE_BITS - FIXED_BITS)) >> unit);
 }
 
 static inline real real_from_fine(fine height, u32 unit)

@@ -201,6 +201,11 @@ LANES_INLINE void shell_evaluate_as(const struct block *block, u32 step, const s
 		valid &= h > 0;
 	}
 	valid = barycentric_solve(block, step, tip, h, area, fan ? &power : NULL, valid, b);
+	/* b may be of any size there */
+	if (PHANTOM_LANES == 1 && !mask_bits(valid)) {
+		out->accepted = valid;
+		return;
+	}
 	/* m0 + b1 (m1 - m0) - b2 (m0 - m2) */
 	n = lanes3_add(row3_step(&block->edge[0].normal, step),
 		       lanes3_scale_small(row3_step(&block->edge[0].normal_along, step), b[1]));
