@@ -20,8 +20,15 @@
 
 #if PHANTOM_LANES == 1
 
+/* mm^2. Between them one inverse does for all; that of a smaller area might not fit, of a larger one is coarse. */
+#define BARYCENTRIC_SMALL REAL(1e-6)
+#define BARYCENTRIC_LARGE REAL(100)
+
 /* Above that, 1 - b1 - b2 is as good as b0. */
 #define BARYCENTRIC_INNER REAL(1.0 / 32)
+
+/* Farther outside than that is far outside, whatever the size. */
+#define BARYCENTRIC_MOST REAL(4096)
 
 /* E or m along one axis. */
 LANES_INLINE lanes row3_axis(const struct row3 *row, u32 step, u32 axis)
@@ -35,7 +42,7 @@ LANES_INLINE lanes row3_axis(const struct row3 *row, u32 step, u32 axis)
 LANES_INLINE lanes offset_edge(const struct block *block, u32 step, u32 i, u32 axis, lanes h)
 {
 	return row3_axis(&block->edge[i].along, step, axis) +
-	       mul_fitting(row3_axis(&block->edge[i].normal_along, step, axis), h);
+	       mul_small(row3_axis(&block->edge[i].normal_along, step, axis), h);
 }
 
 /* P - X_i along one axis. */
@@ -43,14 +50,14 @@ LANES_INLINE lanes offset_corner(const struct block *block, u32 step, u32 i,
 				 const struct nm_point *tip, u32 axis, lanes h)
 {
 	return nm_difference(tip->axis[axis], block->corner[i][axis][step]) -
-	       mul_fitting(row3_axis(&block->edge[i].normal, step, axis), h);
+	       mul_small(row3_axis(&block->edge[i].normal, step, axis), h);
 }
 
 /* Of the cross product of edge i and P - X_corner the component across u and v. */
 LANES_INLINE lanes offset_cross(const struct block *block, u32 step, u32 i, u32 corner,
 				const struct nm_point *tip, u32 u, u32 v, lanes h)
 {
-	return mul_sub(
+	return mul_sub_small(
 		offset_edge(block, step, i, u, h), offset_corner(block, step, corner, tip, v, h),
 		offset_edge(block, step, i, v, h), offset_corner(block, step, corner, tip, u, h));
 }
@@ -66,7 +73,7 @@ LANES_INLINE lanes offset_away(const struct block *block, u32 step, const struct
 
 /*
  * b0 b1 b2. `area` is A / |A0|, with a fan's power of h taken out of it. Returns the lanes of `valid` whose
- * A is not 0.
+ * A is not 0 and whose b are of some size.
  */
 LANES_INLINE mask_lanes barycentric_solve(const struct block *block, u32 step,
 					  const struct nm_point *tip, lanes h, struct lanes3 area,
@@ -75,18 +82,28 @@ LANES_INLINE mask_lanes barycentric_solve(const struct block *block, u32 step,
 	lanes x = lanes_abs(area.x), y = lanes_abs(area.y), z = lanes_abs(area.z);
 	u32 axis = x[0] > y[0] ? (x[0] > z[0] ? 0 : 2) : (y[0] > z[0] ? 1 : 2);
 	u32 u = axis < 2 ? axis + 1 : 0, v = axis ? axis - 1 : 2;
+	real size;
 	lanes under = mul(axis ? axis == 1 ? area.y : area.z : area.x, block->area[step]), inverse;
 
 	if (power)
 		under = mul(under, *power);
 	valid &= under != 0;
-	inverse = divide(lanes_all(REAL(1)), under);
-	b[1] = mul(offset_cross(block, step, 2, 0, tip, u, v, h), inverse);
-	b[2] = mul(offset_cross(block, step, 0, 0, tip, u, v, h), inverse);
-	b[0] = REAL(1) - b[1] - b[2];
-	if (b[0][0] < BARYCENTRIC_INNER)
-		b[0] = mul(offset_cross(block, step, 1, 1, tip, u, v, h), inverse);
-	return valid;
+	b[1] = offset_cross(block, step, 2, 0, tip, u, v, h);
+	b[2] = offset_cross(block, step, 0, 0, tip, u, v, h);
+	size = lanes_abs(under)[0];
+	if (__builtin_expect(size < BARYCENTRIC_SMALL || size > BARYCENTRIC_LARGE, 0)) {
+		b[1] = divide(b[1], under);
+		b[2] = divide(b[2], under);
+		b[0] = divide(offset_cross(block, step, 1, 1, tip, u, v, h), under);
+	} else {
+		inverse = divide(lanes_all(REAL(1)), under);
+		b[1] = mul(b[1], inverse);
+		b[2] = mul(b[2], inverse);
+		b[0] = REAL(1) - b[1] - b[2];
+		if (b[0][0] < BARYCENTRIC_INNER)
+			b[0] = mul(offset_cross(block, step, 1, 1, tip, u, v, h), inverse);
+	}
+	return valid & (lanes_abs(b[1]) < BARYCENTRIC_MOST) & (lanes_abs(b[2]) < BARYCENTRIC_MOST);
 }
 
 /* P - sum b_i X_i */

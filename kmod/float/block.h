@@ -93,15 +93,25 @@ struct float_material {
 	real damping; /* N per mm/s; 0 unless the material names the effect */
 };
 
+/* One of Algorithm 1's walls, as the tip sees it. */
+struct paper_wall {
+	struct lanes3 normal; /* n' */
+	lanes distance; /* d_i |n'| */
+};
+
 /* Found by `paper` in one step of a block; kept for the overlap test. */
 struct paper_step {
 	mask_lanes contact;
+	lanes height; /* d */
 	struct lanes3 normal; /* n */
 	lanes length; /* |DP| */
 	lanes magnitude; /* |s| */
-	struct lanes3 plane[3]; /* normal of the plane through the tip and edge i */
-	lanes height; /* d */
+	union {
+		struct paper_wall wall[3]; /* until n is known */
+		struct lanes3 plane[3]; /* normal of the plane through the tip and edge i */
+	};
 	u32 block, step;
+	bool planes; /* are they there yet? */
 };
 
 /* One root of `projected`. */
@@ -223,6 +233,20 @@ LANES_INLINE struct lanes3 from_corner(const struct block *block, u32 step, u32 
 	};
 }
 
+/* The same of the corner after that of which it is q. */
+LANES_INLINE struct lanes3 from_next_corner(const struct block *block, u32 step, u32 corner,
+					    const struct nm_point *point, struct lanes3 q)
+{
+#ifdef PHANTOM_REAL_FIXED
+	(void)point;
+	return lanes3_sub(q, row3_step(&block->edge[corner - 1].along, step));
+#else
+	/* which would cancel there */
+	(void)q;
+	return from_corner(block, step, corner, point);
+#endif
+}
+
 /* The same for one patch. */
 LANES_INLINE struct real3 from_corner_lane(const struct block *block, u32 lane, u32 corner,
 					   const s32 nm[3])
@@ -271,7 +295,7 @@ LANES_INLINE mask_lanes within_shell(const struct block *block, u32 step, struct
 				     lanes height, lanes lean, bool leans, lanes margin)
 {
 	struct lanes3 away = lanes3_sub(q, row3_step(&block->centre, step));
-	lanes away2 = lanes3_dot_fitting(away, away);
+	lanes away2 = lanes3_dot_small(away, away);
 	lanes far = block->radius[step] + block->extent[step];
 	lanes side = block->extent[step] + margin + mul_fitting(lanes_abs(height), lean);
 
@@ -279,6 +303,20 @@ LANES_INLINE mask_lanes within_shell(const struct block *block, u32 step, struct
 	       ((beside2(away, away2, row3_step(&block->face_normal, step), height) <=
 		 mul(side, side)) |
 		(leans ? lean >= REAL(LEAN_MOST) : lean >= REAL(0)));
+}
+
+/* The steps of a block that are in reach: looked for at once, before any is worked on. */
+struct near_steps {
+	u32 steps; /* bits */
+	mask_lanes mask[PHANTOM_STEPS];
+	lanes height[PHANTOM_STEPS]; /* over the planes */
+};
+
+LANES_INLINE void near_add(struct near_steps *near, u32 step, mask_lanes mask, lanes height)
+{
+	near->mask[step] = mask;
+	near->height[step] = height;
+	near->steps |= (u32)(mask_bits(mask) != 0) << step;
 }
 
 #endif /* PHANTOM_FLOAT_BLOCK_H */

@@ -33,7 +33,8 @@ struct columns {
 LANES_INLINE void columns_add(struct columns *columns, u32 step, struct lanes3 normal,
 			      lanes magnitude)
 {
-	columns->sum[step] = lanes3_add(columns->sum[step], lanes3_scale(normal, magnitude));
+	columns->sum[step] =
+		lanes3_add(columns->sum[step], lanes3_scale_fitting(normal, magnitude));
 	columns->most[step] = lanes_max(columns->most[step], magnitude);
 }
 

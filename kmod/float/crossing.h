@@ -176,7 +176,7 @@ LANES_INLINE mask_lanes crossing_candidates(const struct block *block, u32 step,
 {
 	struct lanes3 g = row3_step(&block->face_normal, step);
 	struct lanes3 q = from_corner(block, step, 0, &segment->end);
-	lanes end = lanes3_dot_fitting(g, q), begin;
+	lanes end = lanes3_dot_small(g, q), begin;
 	mask_lanes candidates = way == CROSSING_INWARD ? end < 0 : end >= 0;
 
 	/* the usual tick: a tip that is over all of them */
@@ -186,7 +186,7 @@ LANES_INLINE mask_lanes crossing_candidates(const struct block *block, u32 step,
 	if (!mask_bits(candidates))
 		return candidates;
 	q = from_corner(block, step, 0, &segment->begin);
-	begin = lanes3_dot_fitting(g, q);
+	begin = lanes3_dot_small(g, q);
 	return candidates & (way == CROSSING_INWARD ? begin >= -rounding : begin <= rounding);
 }
 

@@ -36,20 +36,20 @@ struct fine_roots {
 	u32 count;
 };
 
-/* Of a cubic whose terms fit: see cubic_tame(). */
+/* Of a cubic whose terms are small: see cubic_tame(). */
 LANES_INLINE lanes cubic_at(const struct cubic *c, lanes h)
 {
-	return mul_fitting(mul_fitting(mul_fitting(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
+	return mul_small(mul_small(mul_small(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
 }
 
 LANES_INLINE lanes cubic_slope(const struct cubic *c, lanes h)
 {
-	return mul_fitting(mul_fitting(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
+	return mul_small(mul_small(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
 }
 
 static inline fine fine_cubic_at(const struct fine_cubic *c, fine h)
 {
-	return mul(mul(mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
+	return fine_mul(fine_mul(fine_mul(c->c3, h) + c->c2, h) + c->c1, h) + c->c0;
 }
 
 /* The root in [low, high]; the cubic is negative at one end only and monotone between. */
@@ -60,14 +60,14 @@ static inline fine bracket_solve(const struct fine_cubic *c, fine low, fine high
 
 	for (i = 0; i < BRACKET_STEPS; i++) {
 		fine value = fine_cubic_at(c, h);
-		fine slope = mul(mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
+		fine slope = fine_mul(fine_mul(3 * c->c3, h) + 2 * c->c2, h) + c->c1;
 		fine next;
 
 		if ((value < 0) == falling)
 			high = h;
 		else
 			low = h;
-		next = h - divide(value, slope);
+		next = h - fine_divide(value, slope);
 		/* written so that a step which is no number is refused as well */
 		if (!(next > low && next < high))
 			next = (low + high) / 2;
@@ -81,7 +81,7 @@ static inline fine bracket_solve(const struct fine_cubic *c, fine low, fine high
 /* Critical points of the cubic inside (low, high), ascending; returns how many. */
 static inline u32 critical_points(const struct fine_cubic *c, fine low, fine high, fine out[2])
 {
-	fine discriminant = mul_sub(c->c2, c->c2, 3 * c->c1, c->c3);
+	fine discriminant = fine_mul_sub(c->c2, c->c2, 3 * c->c1, c->c3);
 	fine both, first, second;
 	u32 count = 0;
 
@@ -89,8 +89,8 @@ static inline u32 critical_points(const struct fine_cubic *c, fine low, fine hig
 		return 0;
 	/* the stable form: no difference of nearly equal numbers */
 	both = c->c2 < 0 ? -c->c2 + fine_sqrt(discriminant) : -c->c2 - fine_sqrt(discriminant);
-	first = divide(both, 3 * c->c3);
-	second = divide(c->c1, both);
+	first = fine_divide(both, 3 * c->c3);
+	second = fine_divide(c->c1, both);
 	if (second < first) {
 		fine swap = first;
 
@@ -164,7 +164,7 @@ LANES_INLINE struct cubic cubic_tame(const struct block *block, u32 step, const 
 LANES_INLINE mask_lanes cubic_crosses(const struct cubic *c, lanes low, lanes high, lanes slopes)
 {
 #ifdef PHANTOM_REAL_FIXED
-	return (c->c0 + mul_fitting(c->c1, low) < 0) ^ (3 * c->c0 + mul_fitting(slopes, high) < 0);
+	return (c->c0 + mul_small(c->c1, low) < 0) ^ (3 * c->c0 + mul_fitting(slopes, high) < 0);
 #else
 	(void)slopes;
 	return (cubic_at(c, low) < lanes_all(0)) ^ (cubic_at(c, high) < lanes_all(0));
@@ -176,12 +176,12 @@ LANES_INLINE lanes cubic_correction(const struct cubic *c, lanes h, mask_lanes u
 {
 	lanes value = cubic_at(c, h);
 	lanes slope = lanes_select(usual, cubic_slope(c, h), lanes_all(REAL(1)));
-	lanes square = mul_fitting(slope, slope);
-	lanes under = square - mul_fitting(value, mul_fitting(3 * c->c3, h) + c->c2);
+	lanes square = mul_small(slope, slope);
+	lanes under = square - mul_small(value, mul_small(3 * c->c3, h) + c->c2);
 	/* bent too much for it: Newton's */
 	mask_lanes near = under > lanes_part(square, 4);
 
-	return divide(mul_fitting(value, lanes_select(near, slope, lanes_all(REAL(1)))),
+	return divide(mul_small(value, lanes_select(near, slope, lanes_all(REAL(1)))),
 		      lanes_select(near, under, slope));
 }
 

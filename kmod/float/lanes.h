@@ -104,22 +104,33 @@ LANES_INLINE lanes lanes3_dot(struct lanes3 a, struct lanes3 b)
 	return mul_sum(a.x, b.x, a.y, b.y, a.z, b.z);
 }
 
-/* Where the result is known to be below 2^26 (mm, or of any unit): there is nothing to saturate. */
+/* Of components below 2^13 (mm, or of any unit): in fixed point there is nothing to saturate. */
+LANES_INLINE struct lanes3 lanes3_scale_small(struct lanes3 a, lanes s)
+{
+	return (struct lanes3){mul_small(a.x, s), mul_small(a.y, s), mul_small(a.z, s)};
+}
+
+/* The same, what comes out below 2^26, too. */
 LANES_INLINE struct lanes3 lanes3_scale_fitting(struct lanes3 a, lanes s)
 {
 	return (struct lanes3){mul_fitting(a.x, s), mul_fitting(a.y, s), mul_fitting(a.z, s)};
 }
 
-LANES_INLINE lanes lanes3_dot_fitting(struct lanes3 a, struct lanes3 b)
+LANES_INLINE struct lanes3 lanes3_scale_known(bool small, struct lanes3 a, lanes s)
 {
-	return mul_sum_fitting(a.x, b.x, a.y, b.y, a.z, b.z);
+	return (struct lanes3){mul_known(small, a.x, s), mul_known(small, a.y, s),
+			       mul_known(small, a.z, s)};
 }
 
-LANES_INLINE struct lanes3 lanes3_cross_fitting(struct lanes3 a, struct lanes3 b)
+LANES_INLINE lanes lanes3_dot_small(struct lanes3 a, struct lanes3 b)
 {
-	return (struct lanes3){mul_sub_fitting(a.y, b.z, a.z, b.y),
-			       mul_sub_fitting(a.z, b.x, a.x, b.z),
-			       mul_sub_fitting(a.x, b.y, a.y, b.x)};
+	return mul_sum_small(a.x, b.x, a.y, b.y, a.z, b.z);
+}
+
+LANES_INLINE struct lanes3 lanes3_cross_small(struct lanes3 a, struct lanes3 b)
+{
+	return (struct lanes3){mul_sub_small(a.y, b.z, a.z, b.y), mul_sub_small(a.z, b.x, a.x, b.z),
+			       mul_sub_small(a.x, b.y, a.y, b.x)};
 }
 
 LANES_INLINE struct lanes3 lanes3_cross(struct lanes3 a, struct lanes3 b)
@@ -141,10 +152,17 @@ LANES_INLINE struct lanes3 lanes3_unit(struct lanes3 a)
 	return a;
 }
 
-/* Of length 1, of a vector of that length, which is not 0. */
-LANES_INLINE struct lanes3 lanes3_unit_of_length(struct lanes3 a, lanes length)
+/* The length, and what the direction follows from. */
+LANES_INLINE struct measured lanes3_measure(struct lanes3 a)
 {
-	lanes_unit_of_length(&a.x, &a.y, &a.z, length);
+	return lanes_measure(a.x, a.y, a.z);
+}
+
+/* Of length 1, of the vector that was measured; in lanes of the mask, where it is not 0. */
+LANES_INLINE struct lanes3 lanes3_unit_measured(struct lanes3 a, const struct measured *measured,
+						mask_lanes mask)
+{
+	lanes_unit_measured(&a.x, &a.y, &a.z, measured, mask);
 	return a;
 }
 
@@ -191,6 +209,12 @@ LANES_INLINE struct real3 real3_sub(struct real3 a, struct real3 b)
 LANES_INLINE struct real3 real3_scale(struct real3 a, real s)
 {
 	return (struct real3){mul(a.x, s), mul(a.y, s), mul(a.z, s)};
+}
+
+/* Of what comes out below 2^26. */
+LANES_INLINE struct real3 real3_scale_fitting(struct real3 a, real s)
+{
+	return (struct real3){mul_fitting(a.x, s), mul_fitting(a.y, s), mul_fitting(a.z, s)};
 }
 
 LANES_INLINE real real3_dot(struct real3 a, struct real3 b)

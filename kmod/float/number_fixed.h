@@ -29,7 +29,7 @@
 #endif
 
 typedef s64 real;
-typedef s64 fine;
+typedef s64 fine; /* with FINE_BITS behind the point */
 typedef s64 mask_element;
 typedef s64 coordinate;
 
@@ -111,6 +111,46 @@ LANES_INLINE real real_mul_sum_fitting(real a, real b, real c, real d, real e, r
 	return fixed_shift_fitting(fixed_product(a, b) + fixed_product(c, d) + fixed_product(e, f));
 }
 
+/* The upper half of a b. */
+LANES_INLINE s64 fixed_product_high(s64 a, s64 b)
+{
+	s64 low, high;
+
+	asm("imulq %3" : "=a"(low), "=d"(high) : "%a"(a), "rm"(b) : "cc");
+	return high;
+}
+
+/*
+ * Half of what is to be shifted out of a product, for either factor in advance: then its upper half is the
+ * result, and where several products have a factor in common, that one is shifted once.
+ */
+#define FIXED_SMALL_BITS ((64 - FIXED_BITS) / 2)
+
+/* A factor below 2^13. */
+LANES_INLINE s64 fixed_small(s64 a)
+{
+#ifdef FIXED_CHECKED
+	if ((a >> (63 - FIXED_SMALL_BITS)) + 1UL > 1)
+		__builtin_trap();
+#endif
+	return (s64)((u64)a << FIXED_SMALL_BITS);
+}
+
+LANES_INLINE real real_mul_small(real a, real b)
+{
+	return fixed_product_high(fixed_small(a), fixed_small(b));
+}
+
+LANES_INLINE real real_mul_sub_small(real a, real b, real c, real d)
+{
+	return real_mul_small(a, b) - real_mul_small(c, d);
+}
+
+LANES_INLINE real real_mul_sum_small(real a, real b, real c, real d, real e, real f)
+{
+	return real_mul_small(a, b) + real_mul_small(c, d) + real_mul_small(e, f);
+}
+
 /* high 2^64 / divisor, rounded down; *remainder may be NULL. high < divisor. */
 LANES_INLINE u64 fixed_divide_wide(u64 high, u64 low, u64 divisor, u64 *remainder)
 {
@@ -137,6 +177,34 @@ LANES_INLINE real real_divide(real a, real b)
 		quotient = fixed_divide_wide(over >> (64 - FIXED_BITS), over << FIXED_BITS, under,
 					     NULL);
 	return (a < 0) != (b < 0) ? -(real)quotient : (real)quotient;
+}
+
+/*
+ * Of a cubic whose terms and heights are scaled so that none is above 1: 2^-56 of that. Nothing in it comes near
+ * to the end, 128.
+ */
+#define FINE_BITS 56
+
+LANES_INLINE fine fine_mul(fine a, fine b)
+{
+	return (fine)(fixed_product(a, b) >> FINE_BITS);
+}
+
+LANES_INLINE fine fine_mul_sub(fine a, fine b, fine c, fine d)
+{
+	return (fine)((fixed_product(a, b) - fixed_product(c, d)) >> FINE_BITS);
+}
+
+LANES_INLINE fine fine_divide(fine a, fine b)
+{
+	u64 over = fixed_magnitude(a), under = fixed_magnitude(b), quotient;
+
+	if (over >> (61 - FINE_BITS) >= under)
+		quotient = over ? FIXED_LIMIT : 0;
+	else
+		quotient =
+			fixed_divide_wide(over >> (64 - FINE_BITS), over << FINE_BITS, under, NULL);
+	return (a < 0) != (b < 0) ? -(fine)quotient : (fine)quotient;
 }
 
 LANES_INLINE lanes lanes_mul(lanes a, lanes b)
@@ -174,6 +242,21 @@ LANES_INLINE lanes lanes_mul_sum_fitting(lanes a, lanes b, lanes c, lanes d, lan
 	return (lanes){real_mul_sum_fitting(a[0], b[0], c[0], d[0], e[0], f[0])};
 }
 
+LANES_INLINE lanes lanes_mul_small(lanes a, lanes b)
+{
+	return (lanes){real_mul_small(a[0], b[0])};
+}
+
+LANES_INLINE lanes lanes_mul_sub_small(lanes a, lanes b, lanes c, lanes d)
+{
+	return (lanes){real_mul_sub_small(a[0], b[0], c[0], d[0])};
+}
+
+LANES_INLINE lanes lanes_mul_sum_small(lanes a, lanes b, lanes c, lanes d, lanes e, lanes f)
+{
+	return (lanes){real_mul_sum_small(a[0], b[0], c[0], d[0], e[0], f[0])};
+}
+
 /* Both real, or both lanes. */
 #define mul(a, b) _Generic((a), lanes : lanes_mul, default : real_mul)(a, b)
 #define divide(a, b) _Generic((a), lanes : lanes_divide, default : real_divide)(a, b)
@@ -187,6 +270,18 @@ LANES_INLINE lanes lanes_mul_sum_fitting(lanes a, lanes b, lanes c, lanes d, lan
 	_Generic((a), lanes                                                                        \
 		 : lanes_mul_sum_fitting, default                                                  \
 		 : real_mul_sum_fitting)(a, b, c, d, e, f)
+
+#define mul_small(a, b) _Generic((a), lanes : lanes_mul_small, default : real_mul_small)(a, b)
+#define mul_sub_small(a, b, c, d)                                                                  \
+	_Generic((a), lanes : lanes_mul_sub_small, default : real_mul_sub_small)(a, b, c, d)
+#define mul_sum_small(a, b, c, d, e, f)                                                            \
+	_Generic((a), lanes : lanes_mul_sum_small, default : real_mul_sum_small)(a, b, c, d, e, f)
+
+/* a b; `small` where the caller knows that both are. */
+LANES_INLINE lanes mul_known(bool small, lanes a, lanes b)
+{
+	return small ? lanes_mul_small(a, b) : lanes_mul(a, b);
+}
 
 /* a / parts, rounded down; a power of two. */
 #define lanes_part(a, parts) ((a) >> __builtin_ctz(parts))
@@ -237,7 +332,7 @@ LANES_INLINE real real_sqrt(real a)
 
 LANES_INLINE fine fine_sqrt(fine a)
 {
-	return real_sqrt(a);
+	return a > 0 ? (fine)(fixed_root((u64)a) >> (32 - FINE_BITS / 2)) : 0;
 }
 
 LANES_INLINE lanes lanes_sqrt(lanes a)
@@ -264,10 +359,8 @@ LANES_INLINE struct fixed_vector fixed_vector(real x, real y, real z)
 	out.y = (s64)((u64)y << out.shift);
 	out.z = (s64)((u64)z << out.shift);
 	/* 2^60 ... 2^64 */
-	out.square = (u64)(((__uint128_t)((__int128)out.x * out.x) +
-			    (__uint128_t)((__int128)out.y * out.y) +
-			    (__uint128_t)((__int128)out.z * out.z)) >>
-			   64);
+	out.square = (u64)(fixed_product_high(out.x, out.x) + fixed_product_high(out.y, out.y)) +
+		     (u64)fixed_product_high(out.z, out.z);
 	if (!most)
 		out.square = 1ULL << 60;
 	out.even = (u32)(out.square >> 62 == 0);
@@ -277,20 +370,64 @@ LANES_INLINE struct fixed_vector fixed_vector(real x, real y, real z)
 }
 
 /* |(x, y, z)|, as precise for nm as for m. */
+LANES_INLINE real fixed_vector_length(const struct fixed_vector *v)
+{
+	/* the root is square inverse, Q61, of 2^64 */
+	u64 length = fixed_high(v->square, v->inverse) << 3 >> v->even >> v->shift;
+
+	/* of saturated numbers up to 2^61.8 */
+	return length >> 62 ? 1LL << 62 : (real)length;
+}
+
 LANES_INLINE real real_length(real x, real y, real z)
 {
 	struct fixed_vector v = fixed_vector(x, y, z);
-	u64 length;
 
-	/* the root is square inverse, Q61, of 2^64 */
-	length = fixed_high(v.square, v.inverse) << 3 >> v.even >> v.shift;
-	/* of saturated numbers up to 2^61.8 */
-	return length >> 62 ? 1LL << 62 : (real)length;
+	return fixed_vector_length(&v);
 }
 
 LANES_INLINE lanes lanes_length(lanes x, lanes y, lanes z)
 {
 	return (lanes){real_length(x[0], y[0], z[0])};
+}
+
+/* Of length 1. No length stays so. */
+LANES_INLINE void fixed_vector_unit(const struct fixed_vector *v, lanes *x, lanes *y, lanes *z)
+{
+	/* a / |(a, b, c)| 2^36 = a inverse 2^-61 2^even 2^-64 2^36 */
+	u32 shift = 25 - v->even;
+
+	*x = (lanes){fixed_product_high(v->x, (s64)v->inverse) >> shift};
+	*y = (lanes){fixed_product_high(v->y, (s64)v->inverse) >> shift};
+	*z = (lanes){fixed_product_high(v->z, (s64)v->inverse) >> shift};
+}
+
+LANES_INLINE void lanes_unit(lanes *x, lanes *y, lanes *z)
+{
+	struct fixed_vector v = fixed_vector((*x)[0], (*y)[0], (*z)[0]);
+
+	fixed_vector_unit(&v, x, y, z);
+}
+
+struct measured {
+	struct fixed_vector vector;
+	lanes length;
+};
+
+LANES_INLINE struct measured lanes_measure(lanes x, lanes y, lanes z)
+{
+	struct measured out = {.vector = fixed_vector(x[0], y[0], z[0])};
+
+	out.length = (lanes){fixed_vector_length(&out.vector)};
+	return out;
+}
+
+/* Of length 1, of the vector that was measured. */
+LANES_INLINE void lanes_unit_measured(lanes *x, lanes *y, lanes *z, const struct measured *measured,
+				      mask_lanes mask)
+{
+	(void)mask;
+	fixed_vector_unit(&measured->vector, x, y, z);
 }
 
 /* ---- lane by lane ----------------------------------------------------------- */
@@ -325,39 +462,49 @@ LANES_INLINE real fixed_shift_by(__int128 product, u32 bits)
 	return high > FIXED_LIMIT ? FIXED_LIMIT : high < -FIXED_LIMIT ? -FIXED_LIMIT : high;
 }
 
-/* Of length 1. No length stays so. */
-LANES_INLINE void lanes_unit(lanes *x, lanes *y, lanes *z)
+/* sqrt(a / b) of what is not negative, b > 0, of any size: a / sqrt(a b). */
+LANES_NOINLINE real fixed_root_of_any_ratio(real a, real b)
 {
-	struct fixed_vector v = fixed_vector((*x)[0], (*y)[0], (*z)[0]);
-	u32 shift;
-
-	/* a / |(a, b, c)| 2^36 = a inverse 2^-61 2^even 2^-64 2^36 */
-	shift = 25 - v.even;
-	*x = (lanes){(s64)(fixed_product(v.x, (s64)v.inverse) >> 64) >> shift};
-	*y = (lanes){(s64)(fixed_product(v.y, (s64)v.inverse) >> 64) >> shift};
-	*z = (lanes){(s64)(fixed_product(v.z, (s64)v.inverse) >> 64) >> shift};
-}
-
-/* The same, when it is already measured. */
-LANES_INLINE void lanes_unit_of_length(lanes *x, lanes *y, lanes *z, lanes length)
-{
-	(void)length;
-	lanes_unit(x, y, z);
-}
-
-/* sqrt(a / b) of what is not negative, b > 0: a / sqrt(a b). */
-LANES_INLINE lanes lanes_root_of_ratio(lanes a, lanes b)
-{
-	__uint128_t product = (__uint128_t)(u64)a[0] * (u64)b[0];
+	__uint128_t product = (__uint128_t)(u64)a * (u64)b;
 	u64 high = (u64)(product >> 64), low = (u64)product, inverse;
 	u32 shift;
 
 	if (!product)
-		return (lanes){0};
+		return 0;
 	shift = (u32)(high ? __builtin_clzll(high) : 64 + __builtin_clzll(low)) & ~1U;
 	/* Q61 */
 	inverse = fixed_inverse_root((u64)(product << shift >> 64)) >> 1;
-	return (lanes){fixed_shift_by(fixed_product(a[0], (s64)inverse), 89 - shift / 2)};
+	return fixed_shift_by(fixed_product(a, (s64)inverse), 89 - shift / 2);
+}
+
+/* 2^64 / sqrt(2) */
+#define FIXED_ROOT_HALF 0xb504f333f9de6484ULL
+
+/* The same; fast where both are below 2 and their product is from 1/2 to below 2. */
+LANES_INLINE lanes lanes_root_of_ratio(lanes a, lanes b)
+{
+	u64 over = (u64)a[0] << (63 - FIXED_BITS), under = (u64)b[0] << (63 - FIXED_BITS);
+	/* a b / 4 of 2^64 */
+	u64 half = fixed_high(over, under);
+
+	if (__builtin_expect(
+		    (u64)(a[0] | b[0]) >> (FIXED_BITS + 1) || half - (1ULL << 61) >= 3ULL << 61, 0))
+		return (lanes){fixed_root_of_any_ratio(a[0], b[0])};
+	half <<= 1;
+	/* a / sqrt(a b / 2), Q61 */
+	half = fixed_high(over, fixed_inverse_root(half));
+	return (lanes){(s64)(fixed_high(half, FIXED_ROOT_HALF) >> (61 - FIXED_BITS))};
+}
+
+/* a, b and c, none of them negative, with the largest brought to [1/2, 1]: to be compared with one another. */
+LANES_INLINE void lanes_bring_to_one(lanes *a, lanes *b, lanes *c)
+{
+	u64 all = (u64)((*a)[0] | (*b)[0] | (*c)[0] | 1);
+	u32 shift = (u32)__builtin_clzll(all);
+
+	*a = (lanes){(s64)((u64)(*a)[0] << shift >> (64 - FIXED_BITS))};
+	*b = (lanes){(s64)((u64)(*b)[0] << shift >> (64 - FIXED_BITS))};
+	*c = (lanes){(s64)((u64)(*c)[0] << shift >> (64 - FIXED_BITS))};
 }
 
 /* There is no infinity, and all is a number. */
@@ -380,6 +527,14 @@ LANES_INLINE real real_limit_force(real n)
 LANES_INLINE lanes lanes_limit_force(lanes n)
 {
 	return (lanes){real_limit_force(n[0])};
+}
+
+/* mm: with it, and edges of some m, all that is reckoned with in a shell is small. */
+#define FIXED_HEIGHT_MAX REAL(2000)
+
+LANES_INLINE real real_limit_height(real mm)
+{
+	return mm < FIXED_HEIGHT_MAX ? mm : FIXED_HEIGHT_MAX;
 }
 
 /* ---- nm and the border ------------------------------------------------------- */

@@ -32,6 +32,10 @@ typedef double fine;
 /* A constant. */
 #define REAL(x) ((real)(x))
 
+#define fine_mul mul
+#define fine_divide divide
+#define fine_mul_sub mul_sub
+
 /* Larger than any squared distance, mm^2. */
 #define REAL_MOST REAL(1e30)
 
@@ -48,6 +52,9 @@ typedef double fine;
 #define real_limit_force(n) (n)
 #define lanes_limit_force(n) (n)
 
+/* Nor is a shell too high. */
+#define real_limit_height(mm) (mm)
+
 /* Both real, or both lanes. */
 #define mul(a, b) ((a) * (b))
 #define divide(a, b) ((a) / (b))
@@ -60,6 +67,14 @@ typedef double fine;
 #define mul_fitting mul
 #define mul_sub_fitting mul_sub
 #define mul_sum_fitting mul_sum
+
+/* And of factors that are small, below 2^13 (mm, or of any unit): in fixed point the fastest. */
+#define mul_small mul
+#define mul_sub_small mul_sub
+#define mul_sum_small mul_sum
+
+/* a b; `small` where the caller knows that both are. */
+#define mul_known(small, a, b) mul(a, b)
 
 /* a / parts; a power of two. */
 #define lanes_part(a, parts) ((a) * (REAL(1) / (parts)))
@@ -177,16 +192,37 @@ LANES_INLINE void lanes_over(lanes *x, lanes *y, lanes *z, lanes s)
 	*z *= inverse;
 }
 
+/* a, b and c, none of them negative, over the largest: to be compared with one another. */
+LANES_INLINE void lanes_bring_to_one(lanes *a, lanes *b, lanes *c)
+{
+	lanes most = lanes_max(lanes_max(*a, *b), *c);
+
+	lanes_over(a, b, c, lanes_max(most, (lanes){} + REAL_TINY));
+}
+
 /* Of length 1; of no length stays so. */
 LANES_INLINE void lanes_unit(lanes *x, lanes *y, lanes *z)
 {
 	lanes_over(x, y, z, lanes_max(lanes_length(*x, *y, *z), (lanes){} + REAL_SMALLEST));
 }
 
-/* The same, when it is already measured, and not 0. */
-LANES_INLINE void lanes_unit_of_length(lanes *x, lanes *y, lanes *z, lanes length)
+struct measured {
+	lanes length;
+};
+
+LANES_INLINE struct measured lanes_measure(lanes x, lanes y, lanes z)
 {
-	lanes_over(x, y, z, length);
+	return (struct measured){lanes_length(x, y, z)};
+}
+
+/* Of length 1, of the vector that was measured; in lanes of the mask, where it is not 0. */
+LANES_INLINE void lanes_unit_measured(lanes *x, lanes *y, lanes *z, const struct measured *measured,
+				      mask_lanes mask)
+{
+	lanes one = (lanes){} + 1;
+
+	lanes_over(x, y, z,
+		   (lanes)((mask & (mask_lanes)measured->length) | (~mask & (mask_lanes)one)));
 }
 
 /* False for an infinity or what is no number. */

@@ -3,8 +3,8 @@
  * overlap.h - `paper`: drops a contact whose open segment D-P is crossed by the triangle of
  * another contact: that triangle stands between the tip and the point it is pushed from.
  *
- * All segments share P, so the plane through P and each edge of a triangle is formed once; a pair
- * then costs four dot products. Crossings within OVERLAP_ENDS of the segment's ends do not count,
+ * All segments share P, so the plane through P and each edge of a triangle is formed once, when a segment
+ * first meets the triangle's plane; a pair then costs four dot products. Crossings within OVERLAP_ENDS of the segment's ends do not count,
  * nor do triangles that share the edge or vertex on which D lies (D lies on them as well).
  */
 #ifndef PHANTOM_FLOAT_OVERLAP_H
@@ -16,34 +16,38 @@
 #define OVERLAP_ENDS REAL(1e-6)
 
 /* The planes through the tip and the edges of a step's triangles. */
-static inline void overlap_planes(const struct phantom_float_set *set, struct paper_step *at,
-				  const struct nm_point *tip)
+LANES_NOINLINE void overlap_planes(const struct phantom_float_set *set, struct paper_step *at,
+				   const struct nm_point *tip)
 {
 	const struct block *block = &set->blocks[at->block];
+	struct lanes3 q = from_corner(block, at->step, 0, tip);
 	u32 i;
 
 	for (i = 0; i < 3; i++) {
-		struct lanes3 q = from_corner(block, at->step, i, tip);
-
+		if (i)
+			q = from_next_corner(block, at->step, i, tip, q);
 		/* (x_i - P) x (x_(i+1) - P) = e x q */
-		at->plane[i] = lanes3_cross_fitting(row3_step(&block->edge[i].along, at->step), q);
+		at->plane[i] = lanes3_cross_small(row3_step(&block->edge[i].along, at->step), q);
 	}
+	at->planes = true;
 }
 
 /* Lanes of `at` whose triangle is crossed by the open segment from the tip along `way` (D - P). */
-LANES_INLINE mask_lanes overlap_crossed(const struct phantom_float_set *set,
-					const struct paper_step *at, struct lanes3 way)
+LANES_INLINE mask_lanes overlap_crossed(const struct phantom_float_set *set, struct paper_step *at,
+					const struct nm_point *tip, struct lanes3 way)
 {
 	const struct block *block = &set->blocks[at->block];
 	/* the plane of the triangle is met at d / -(g . way) of the segment */
-	lanes down = -lanes3_dot_fitting(row3_step(&block->face_normal, at->step), way);
-	mask_lanes met = (at->height > mul_fitting(lanes_all(OVERLAP_ENDS), down)) &
-			 (at->height < mul_fitting(lanes_all(REAL(1) - OVERLAP_ENDS), down)) &
+	lanes down = -lanes3_dot_small(row3_step(&block->face_normal, at->step), way);
+	mask_lanes met = (at->height > mul_small(lanes_all(OVERLAP_ENDS), down)) &
+			 (at->height < mul_small(lanes_all(REAL(1) - OVERLAP_ENDS), down)) &
 			 at->contact;
 	lanes u, v, w, low, high;
 
 	if (!mask_bits(met))
 		return met;
+	if (!at->planes)
+		overlap_planes(set, at, tip);
 	u = lanes3_dot(at->plane[0], way);
 	v = lanes3_dot(at->plane[1], way);
 	w = lanes3_dot(at->plane[2], way);
@@ -110,9 +114,9 @@ static inline bool overlap_shares(const struct block *own, u32 own_lane, u32 edg
 }
 
 /* Is the contact of that lane crossed by the triangle of any other? */
-static inline bool overlap_dropped(const struct phantom_float_set *set,
-				   const struct paper_step *steps, u32 count,
-				   const struct paper_step *own, u32 lane, const s32 tip_nm[3])
+static inline bool overlap_dropped(const struct phantom_float_set *set, struct paper_step *steps,
+				   u32 count, const struct paper_step *own, u32 lane,
+				   const struct nm_point *tip)
 {
 	const struct block *block = &set->blocks[own->block];
 	u32 own_lane = own->step * PHANTOM_LANES + lane;
@@ -123,7 +127,7 @@ static inline bool overlap_dropped(const struct phantom_float_set *set,
 	u32 i, l;
 
 	for (i = 0; i < count; i++) {
-		u32 crossed = mask_bits(overlap_crossed(set, &steps[i], ways));
+		u32 crossed = mask_bits(overlap_crossed(set, &steps[i], tip, ways));
 
 		if (&steps[i] == own)
 			crossed &= ~(1U << lane);
@@ -137,7 +141,8 @@ static inline bool overlap_dropped(const struct phantom_float_set *set,
 			if (!overlap_touches(block, own_lane, other, other_lane))
 				return true;
 			if (!edges_known) {
-				struct real3 q = from_corner_lane(block, own_lane, 0, tip_nm);
+				struct real3 q =
+					lanes3_lane(from_corner(block, own->step, 0, tip), lane);
 
 				edges = overlap_edges_of_foot(block, own_lane, real3_add(q, way),
 							      rounding_mm(set));

@@ -35,28 +35,35 @@
 /* Cosine between n and g. */
 #define GRAZING REAL(1e-4)
 
-struct paper_wall {
-	struct lanes3 normal; /* n' */
-	lanes distance; /* d_i |n'| */
-};
+/* P - B, for the distance from a wall, which stands across e: what q has along e counts for nothing. */
+LANES_INLINE struct lanes3 beyond_foot(struct lanes3 q, struct lanes3 along, lanes t)
+{
+#ifdef PHANTOM_REAL_FIXED
+	/* and adds nothing to what is off: sums are as precise as small ones */
+	(void)along;
+	(void)t;
+	return q;
+#else
+	return lanes3_sub(q, lanes3_scale(along, t));
+#endif
+}
 
 LANES_INLINE struct paper_wall paper_wall(const struct paper_edge *edge, u32 step, struct lanes3 q)
 {
 	struct lanes3 along = row3_step(&edge->along, step);
-	lanes t = mul(lanes3_dot_fitting(along, q), edge->inverse_length2[step]);
+	lanes t = mul(lanes3_dot_small(along, q), edge->inverse_length2[step]);
 	struct paper_wall out;
 	struct lanes3 wall;
 
 	t = lanes_min(lanes_max(t, lanes_all(0)), lanes_all(REAL(1)));
 	out.normal = lanes3_add(row3_step(&edge->normal, step),
-				lanes3_scale_fitting(row3_step(&edge->normal_along, step), t));
+				lanes3_scale_small(row3_step(&edge->normal_along, step), t));
 	wall = lanes3_add(row3_step(&edge->wall, step),
-			  lanes3_scale_fitting(row3_step(&edge->wall_along, step), t));
-	q = lanes3_sub(q, lanes3_scale_fitting(along, t));
-	out.distance = mul(lanes3_dot_fitting(wall, q),
-			   lanes_root_of_ratio(lanes3_dot_fitting(out.normal, out.normal),
-					       lanes_max(lanes3_dot_fitting(wall, wall),
-							 lanes_all(REAL_TINY))));
+			  lanes3_scale_small(row3_step(&edge->wall_along, step), t));
+	out.distance = mul(
+		lanes3_dot_small(wall, beyond_foot(q, along, t)),
+		lanes_root_of_ratio(lanes3_dot_small(out.normal, out.normal),
+				    lanes_max(lanes3_dot_small(wall, wall), lanes_all(REAL_TINY))));
 	return out;
 }
 
@@ -64,29 +71,26 @@ LANES_INLINE struct paper_wall paper_wall(const struct paper_edge *edge, u32 ste
 LANES_INLINE struct lanes3 paper_normal(const struct paper_wall wall[3])
 {
 	const lanes zero = lanes_all(0), one = lanes_all(REAL(1));
-	lanes most = lanes_max(lanes_max(wall[0].distance, wall[1].distance), wall[2].distance);
-	lanes scale = divide(one, lanes_max(most, lanes_all(REAL_TINY)));
-	lanes d[3], weight[3];
+	lanes d[3] = {wall[0].distance, wall[1].distance, wall[2].distance}, weight[3];
 	mask_lanes vanished;
 	struct lanes3 n;
 	u32 i;
 
-	for (i = 0; i < 3; i++) {
-		d[i] = mul(wall[i].distance, scale);
+	lanes_bring_to_one(&d[0], &d[1], &d[2]);
+	for (i = 0; i < 3; i++)
 		d[i] = lanes_keep(d[i] >= VANISHING, d[i]);
-	}
-	weight[0] = mul_fitting(d[1], d[2]);
-	weight[1] = mul_fitting(d[0], d[2]);
-	weight[2] = mul_fitting(d[0], d[1]);
+	weight[0] = mul_small(d[1], d[2]);
+	weight[1] = mul_small(d[0], d[2]);
+	weight[2] = mul_small(d[0], d[1]);
 	vanished = (weight[0] == zero) & (weight[1] == zero) & (weight[2] == zero);
 	for (i = 0; i < 3; i++)
 		weight[i] = lanes_select(vanished, lanes_keep(d[i] == zero, one), weight[i]);
-	n.x = mul_sum_fitting(wall[0].normal.x, weight[0], wall[1].normal.x, weight[1],
-			      wall[2].normal.x, weight[2]);
-	n.y = mul_sum_fitting(wall[0].normal.y, weight[0], wall[1].normal.y, weight[1],
-			      wall[2].normal.y, weight[2]);
-	n.z = mul_sum_fitting(wall[0].normal.z, weight[0], wall[1].normal.z, weight[1],
-			      wall[2].normal.z, weight[2]);
+	n.x = mul_sum_small(wall[0].normal.x, weight[0], wall[1].normal.x, weight[1],
+			    wall[2].normal.x, weight[2]);
+	n.y = mul_sum_small(wall[0].normal.y, weight[0], wall[1].normal.y, weight[1],
+			    wall[2].normal.y, weight[2]);
+	n.z = mul_sum_small(wall[0].normal.z, weight[0], wall[1].normal.z, weight[1],
+			    wall[2].normal.z, weight[2]);
 	return n;
 }
 
@@ -101,41 +105,61 @@ LANES_INLINE mask_lanes shell_candidates(const struct block *block, u32 step, st
 			    lanes_all(PAPER_MARGIN * rounding));
 }
 
-/*
- * Fills `out` and returns true if any patch of the step is in contact. `out` is valid in the
- * lanes of out->contact only.
- */
-static inline bool paper_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
-				  real rounding, struct paper_step *out)
+static inline void paper_near(const struct block *block, const struct nm_point *tip, real rounding,
+			      struct near_steps *near)
 {
-	struct lanes3 g = row3_step(&block->face_normal, step);
+	u32 step;
+
+	near->steps = 0;
+	for (step = 0; step < PHANTOM_STEPS; step++) {
+		struct lanes3 q = from_corner(block, step, 0, tip);
+		lanes height = lanes3_dot_small(row3_step(&block->face_normal, step), q);
+
+		near_add(near, step, shell_candidates(block, step, q, height, rounding), height);
+	}
+}
+
+/*
+ * First of two stages: the walls, of the patches of the mask, which are `height` over their planes. False if the
+ * tip is outside one of each of them.
+ */
+static inline bool paper_walls(const struct block *block, u32 step, const struct nm_point *tip,
+			       lanes height, mask_lanes contact, real rounding,
+			       struct paper_step *out)
+{
 	struct lanes3 q = from_corner(block, step, 0, tip);
-	lanes height = lanes3_dot_fitting(g, q);
-	lanes radius = block->radius[step];
-	mask_lanes contact = shell_candidates(block, step, q, height, rounding);
-	struct paper_wall wall[3];
-	struct lanes3 n;
-	lanes cosine;
 	u32 i;
 
-	if (!mask_bits(contact))
-		return false;
 	for (i = 0; i < 3; i++) {
+		struct paper_wall *wall = &out->wall[i];
+
 		if (i)
-			q = from_corner(block, step, i, tip);
-		wall[i] = paper_wall(&block->edge[i], step, q);
-		contact &= wall[i].distance >= -rounding;
-		wall[i].distance = lanes_max(wall[i].distance, lanes_all(0));
+			q = from_next_corner(block, step, i, tip, q);
+		*wall = paper_wall(&block->edge[i], step, q);
+		contact &= wall->distance >= -rounding;
+		if (PHANTOM_LANES == 1 && !mask_bits(contact))
+			return false;
+		wall->distance = lanes_max(wall->distance, lanes_all(0));
 	}
-	if (!mask_bits(contact))
-		return false;
-	n = paper_normal(wall);
-	n = lanes3_unit(n);
-	cosine = lanes3_dot_fitting(g, n);
-	contact &= cosine > GRAZING;
+	out->contact = contact;
+	out->height = height;
+	return mask_bits(contact);
+}
+
+/*
+ * The second stage: fills `out` and returns true if any patch of the step is in contact. `out` is valid in the
+ * lanes of out->contact only.
+ */
+static inline bool paper_contact(const struct block *block, u32 step, struct paper_step *out)
+{
+	struct lanes3 n = lanes3_unit(paper_normal(out->wall));
+	lanes cosine = lanes3_dot_small(row3_step(&block->face_normal, step), n);
+	lanes radius = block->radius[step];
+	mask_lanes contact = out->contact & (cosine > GRAZING);
+
 	/* under the plane by rounding is on it: a small cosine would make a length of that */
 	out->length =
-		divide(lanes_max(height, lanes_all(0)), lanes_max(cosine, lanes_all(GRAZING)));
+		divide(lanes_max(out->height, lanes_all(0)), lanes_max(cosine, lanes_all(GRAZING)));
 	contact &= out->length < radius;
 	if (!mask_bits(contact))
 		return false;
@@ -146,8 +170,20 @@ static inline bool paper_evaluate(const struct block *block, u32 step, const str
 	out->normal.z = lanes_keep(contact, n.z);
 	out->magnitude = lanes_keep(
 		contact, lanes_limit_force(mul(block->stiffness[step], radius - out->length)));
-	out->height = height;
+	out->planes = false;
 	return true;
+}
+
+/* The same, of all patches of a step. */
+static inline bool paper_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
+				  real rounding, struct paper_step *out)
+{
+	struct lanes3 q = from_corner(block, step, 0, tip);
+	lanes height = lanes3_dot_small(row3_step(&block->face_normal, step), q);
+	mask_lanes near = shell_candidates(block, step, q, height, rounding);
+
+	return mask_bits(near) && paper_walls(block, step, tip, height, near, rounding, out) &&
+	       paper_contact(block, step, out);
 }
 
 #endif /* PHANTOM_FLOAT_PAPER_H */

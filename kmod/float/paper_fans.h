@@ -40,8 +40,8 @@ static inline bool paper_fan_shares(const struct block *fan, u32 fan_lane,
 }
 
 /* Is the contact over a fan crossed by the triangle of a face in contact? */
-static inline bool paper_fan_crossed(const struct phantom_float_set *set,
-				     const struct paper_step *steps, u32 count,
+static inline bool paper_fan_crossed(const struct phantom_float_set *set, struct paper_step *steps,
+				     u32 count, const struct nm_point *tip,
 				     const struct projected_root *root)
 {
 	const struct block *fan = &set->blocks[root->patch / PHANTOM_BLOCK];
@@ -49,7 +49,7 @@ static inline bool paper_fan_crossed(const struct phantom_float_set *set,
 	u32 i, l;
 
 	for (i = 0; i < count; i++) {
-		u32 crossed = mask_bits(overlap_crossed(set, &steps[i], way));
+		u32 crossed = mask_bits(overlap_crossed(set, &steps[i], tip, way));
 
 		for (l = 0; crossed >> l; l++)
 			if ((crossed >> l & 1) &&

@@ -242,11 +242,12 @@ static inline void prepare_lean(struct block *block, u32 lane, const struct patc
 }
 
 /*
- * Where no term of c, c' and c'' on [0, H], and no product of two of them, is larger than TAME_MOST, with
- * the tip in reach: |q| <= R + 2 extent. 1 mm and a doubled m0 are for rounding and for the grid of normals.
+ * Where no term of c, c' and c'' on [0, H] is larger than TAME_MOST, nor any product of two of them than
+ * TAME_PRODUCT_MOST, with the tip in reach: |q| <= R + 2 extent. 1 mm and a doubled m0 are for rounding and for
+ * the grid of normals.
  */
-#define TAME_MOST WIDE(1 << 24)
-#define TAME_SLOPE_MOST WIDE(1 << 12)
+#define TAME_MOST WIDE(1 << 12)
+#define TAME_PRODUCT_MOST WIDE(1 << 24)
 
 static inline bool patch_tame(const struct patch_geometry *p, wide height, wide extent)
 {
@@ -259,8 +260,9 @@ static inline bool patch_tame(const struct patch_geometry *p, wide height, wide 
 	wide slope = wide_add(c1, wide_mul(wide_add(c2, curve), height));
 	wide value = wide_add(away, wide_mul(slope, height));
 
-	return wide_less(slope, TAME_SLOPE_MOST) && wide_less(curve, TAME_MOST) &&
-	       wide_less(wide_mul(value, wide_add(slope, curve)), TAME_MOST);
+	return wide_less(slope, TAME_MOST) && wide_less(curve, TAME_MOST) &&
+	       wide_less(c3, TAME_MOST) && wide_less(value, TAME_MOST) &&
+	       wide_less(wide_mul(value, wide_add(slope, curve)), TAME_PRODUCT_MOST);
 }
 
 static inline void prepare_shell(struct block *block, u32 lane, const struct patch_geometry *p,
@@ -276,7 +278,8 @@ static inline void prepare_shell(struct block *block, u32 lane, const struct pat
 	row_set(block->normal_area0, lane, wide3_dot(p->normal[0], p->lead));
 	row_set(block->normal_area1, lane, wide3_dot(p->normal[0], p->area1));
 	row_set(block->normal_area2, lane, wide3_dot(p->normal[0], p->area2));
-	row_set(block->height_limit, lane, height);
+	block->height_limit[lane / PHANTOM_LANES][lane % PHANTOM_LANES] =
+		real_limit_height(real_from_wide(height));
 	block_set_tame(block, lane, patch_tame(p, height, extent));
 }
 

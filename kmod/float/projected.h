@@ -48,6 +48,7 @@
 #include "combine.h"
 #include "barycentric.h"
 #include "cubic.h"
+#include "cubic_fixed.h"
 #include "folded.h"
 #include "window.h"
 
@@ -68,41 +69,70 @@ struct shell_point {
 	lanes beyond; /* 1 - b0 */
 };
 
-/* The root in [-rounding, H] of the candidate lanes that are monotone; returns whether there is any. */
-LANES_INLINE bool find_roots(const struct block *block, u32 step, const struct cubic *any,
-			     mask_lanes candidates, real rounding, u32 newton_steps,
-			     struct step_roots *roots)
+/* The patches of a step that are monotone: each has one root at most. */
+struct usual_roots {
+	struct cubic c;
+	mask_lanes valid; /* has one */
+	mask_lanes split; /* is not monotone */
+	lanes sign, h;
+};
+
+/* Where the root in [-rounding, H] is by a first guess, of the candidate lanes; returns whether there is any. */
+LANES_INLINE bool guess_roots(const struct block *block, u32 step, mask_lanes candidates,
+			      real rounding, struct usual_roots *roots)
 {
 	const lanes low = lanes_all(-rounding), zero = lanes_all(0);
 	lanes high = block->height_limit[step];
-	struct cubic c = cubic_tame(block, step, any);
+	struct cubic c = cubic_tame(block, step, &roots->c);
 	/* Bernstein coefficients of c' on [0, H] */
-	lanes first = c.c1, middle = c.c1 + mul_fitting(c.c2, high), last = cubic_slope(&c, high);
+	lanes first = c.c1, middle = c.c1 + mul_small(c.c2, high), last = cubic_slope(&c, high);
 	lanes least = lanes_min(lanes_min(first, middle), last);
 	lanes most = lanes_max(lanes_max(first, middle), last);
 	mask_lanes falling = (most < zero) & (lanes_part(least, MONOTONE_PARTS) >= most);
 	mask_lanes rising = (least > zero) & (lanes_part(most, MONOTONE_PARTS) <= least);
 	mask_lanes usual = candidates & (falling | rising);
-	lanes h;
-	u32 i;
 
 	roots->split = candidates & ~usual;
-	roots->valid[0] = usual & cubic_crosses(&c, low, high, first + middle + last);
-	if (!mask_bits(roots->valid[0]))
+	roots->valid = usual & cubic_crosses(&c, low, high, first + middle + last);
+	if (!mask_bits(roots->valid))
 		return false;
-	roots->sign[0] = lanes_select(falling, lanes_all(REAL(1)), lanes_all(REAL(-1)));
-	h = lanes_min(lanes_max(divide(-c.c0, lanes_select(usual, c.c1, lanes_all(REAL(1)))), low),
-		      high);
-	for (i = 0; i < newton_steps; i++)
-		h = lanes_min(lanes_max(h - cubic_correction(&c, h, usual), low), high);
-	roots->h[0] = h;
+	roots->sign = lanes_select(falling, lanes_all(REAL(1)), lanes_all(REAL(-1)));
+	roots->h = divide(-c.c0, lanes_select(usual, c.c1, lanes_all(REAL(1))));
+	roots->h = lanes_min(lanes_max(roots->h, low), high);
 	return true;
 }
 
+/* One of Halley's steps. */
+LANES_INLINE void improve_roots(const struct block *block, u32 step, real rounding,
+				struct usual_roots *roots)
+{
+	lanes better = roots->h - cubic_correction(&roots->c, roots->h, roots->valid);
+
+	roots->h = lanes_min(lanes_max(better, lanes_all(-rounding)), block->height_limit[step]);
+}
+
 #ifndef PHANTOM_REAL_SINGLE
+/* The roots of one lane whose interval is split, from `low` on, mm. */
+static inline void split_lane(const struct block *block, u32 step, u32 l,
+			      const struct nm_point *tip, const struct cubic *c, real low,
+			      struct fine_roots *found)
+{
+	real high = block->height_limit[step][l];
+#ifdef PHANTOM_REAL_FIXED
+	(void)c;
+	exact_roots(block, step, tip, low, high, found);
+#else
+	struct fine_cubic one = {c->c0[l], c->c1[l], c->c2[l], c->c3[l]};
+
+	(void)tip;
+	split_roots(&one, low, high, found);
+#endif
+}
+
 /* Beside them the roots of the lanes whose interval is split; `rounds` of them are there already. */
-static inline u32 find_split_roots(const struct block *block, u32 step, const struct cubic *c,
-				   real rounding, u32 rounds, struct step_roots *roots)
+static inline u32 find_split_roots(const struct block *block, u32 step, const struct nm_point *tip,
+				   const struct cubic *c, real rounding, u32 rounds,
+				   struct step_roots *roots)
 {
 	u32 split = mask_bits(roots->split), l, i;
 
@@ -112,12 +142,11 @@ static inline u32 find_split_roots(const struct block *block, u32 step, const st
 		roots->valid[i] = (mask_lanes){};
 	}
 	for (l = 0; l < PHANTOM_LANES; l++) {
-		struct fine_cubic one = {c->c0[l], c->c1[l], c->c2[l], c->c3[l]};
 		struct fine_roots found;
 
 		if (!(split >> l & 1))
 			continue;
-		split_roots(&one, -rounding, block->height_limit[step][l], &found);
+		split_lane(block, step, l, tip, c, -rounding, &found);
 		for (i = 0; i < found.count; i++) {
 			roots->h[i][l] = found.h[i];
 			roots->sign[i][l] = found.falling[i] ? REAL(1) : REAL(-1);
@@ -130,39 +159,62 @@ static inline u32 find_split_roots(const struct block *block, u32 step, const st
 }
 #endif
 
-/* Is the root in the shell, and what does it give? */
-LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
-				   lanes h, mask_lanes valid, mask_lanes split, real rounding,
-				   bool fan, struct shell_point *out)
+/*
+ * Is the tip where b and h say, which is so far from it? Floating point may be off by as much as FOUND_AGAIN; fixed
+ * point is no farther off than the window is wide, and must not be: next to where shells shrink to a point such
+ * roots are as near.
+ */
+LANES_INLINE mask_lanes found_again(struct lanes3 away, lanes radius, real soft)
+{
+#ifdef PHANTOM_REAL_FIXED
+	(void)radius;
+	return lanes_max(lanes_max(lanes_abs(away.x), lanes_abs(away.y)), lanes_abs(away.z)) <=
+	       lanes_all(soft);
+#else
+	(void)soft;
+	return lanes3_dot(away, away) <=
+	       mul(mul(lanes_all(mul(FOUND_AGAIN, FOUND_AGAIN)), radius), radius);
+#endif
+}
+
+/* Is the root in the shell, and what does it give? `tame`: in fixed point, a patch that is. */
+LANES_INLINE void shell_evaluate_as(const struct block *block, u32 step, const struct nm_point *tip,
+				    lanes h, mask_lanes valid, mask_lanes split, real rounding,
+				    bool fan, bool tame, struct shell_point *out)
 {
 	const lanes one = lanes_all(REAL(1));
 	const real soft = SOFT_WALL * rounding;
 	/* A(h) / |A0| */
 	struct lanes3 area =
-		lanes3_add(row3_step(&block->face_normal, step),
-			   lanes3_scale(lanes3_add(row3_step(&block->area1, step),
-						   lanes3_scale(row3_step(&block->area2, step), h)),
-					h));
-	lanes turned, reach, length, least, radius = block->radius[step];
+		lanes3_add(row3_step(&block->area1, step),
+			   lanes3_scale_known(tame, row3_step(&block->area2, step), h));
+	lanes turned, reach, least, radius = block->radius[step];
 	lanes power = one; /* h^order */
 	lanes b[3];
+	struct measured measured;
 	struct lanes3 n;
 	mask_lanes near_wall;
 
+	area = lanes3_add(row3_step(&block->face_normal, step), lanes3_scale_known(tame, area, h));
 	if (fan) {
 		power = lanes_select(block->order[step] > REAL(1), mul(h, h), h);
 		valid &= h > 0;
 	}
 	valid = barycentric_solve(block, step, tip, h, area, fan ? &power : NULL, valid, b);
+	/* b may be of any size there */
+	if (PHANTOM_LANES == 1 && !mask_bits(valid)) {
+		out->accepted = valid;
+		return;
+	}
 	/* m0 + b1 (m1 - m0) - b2 (m0 - m2) */
 	n = lanes3_add(row3_step(&block->edge[0].normal, step),
-		       lanes3_scale(row3_step(&block->edge[0].normal_along, step), b[1]));
-	n = lanes3_sub(n, lanes3_scale(row3_step(&block->edge[2].normal_along, step), b[2]));
+		       lanes3_scale_small(row3_step(&block->edge[0].normal_along, step), b[1]));
+	n = lanes3_sub(n, lanes3_scale_small(row3_step(&block->edge[2].normal_along, step), b[2]));
 	turned = mul(lanes_abs(lanes3_dot(area, n)), block->area[step]);
 	if (fan)
 		turned = mul(turned, power);
 	/* |N x E_i| is at most the length of an offset edge */
-	reach = mul(lanes_all(2 * soft), block->extent[step] + h + soft);
+	reach = mul_small(lanes_all(2 * soft), block->extent[step] + h + soft);
 	least = mul(lanes_min(lanes_min(b[0], b[1]), b[2]), turned);
 	valid &= least >= -reach;
 	out->accepted = valid;
@@ -171,17 +223,15 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const st
 	if (mask_bits(split)) {
 		struct lanes3 away = barycentric_away(block, step, tip, h, b);
 
-		valid &= ~split |
-			 (lanes3_dot(away, away) <=
-			  mul(mul(lanes_all(mul(FOUND_AGAIN, FOUND_AGAIN)), radius), radius));
+		valid &= ~split | found_again(away, radius, soft);
 	}
-	length = lanes3_length(n);
-	out->height = mul(h, length);
-	valid &= (length > 0) & (out->height < radius) & (out->height > -rounding);
+	measured = lanes3_measure(n);
+	out->height = mul_small(h, measured.length);
+	valid &= (measured.length > 0) & (out->height < radius) & (out->height > -rounding);
 	out->accepted = valid;
 	if (!mask_bits(valid))
 		return;
-	out->normal = lanes3_unit_of_length(n, lanes_select(valid, length, one));
+	out->normal = lanes3_unit_measured(n, &measured, valid);
 	out->magnitude = lanes_limit_force(mul(block->stiffness[step], radius - out->height));
 	near_wall = valid & (least <= reach);
 	out->near_wall = near_wall;
@@ -191,10 +241,21 @@ LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const st
 	if (fan)
 		reach = mul(reach, power);
 	turned = lanes_max(turned, mul(reach, lanes_all(IN_PLANE)));
-	out->part[0] = divide(mul(b[0], turned), length);
-	out->part[1] = divide(mul(b[1], turned), length);
-	out->part[2] = divide(mul(b[2], turned), length);
+	out->part[0] = divide(mul(b[0], turned), measured.length);
+	out->part[1] = divide(mul(b[1], turned), measured.length);
+	out->part[2] = divide(mul(b[2], turned), measured.length);
 	out->beyond = one - b[0];
+}
+
+LANES_NOINLINE void shell_evaluate(const struct block *block, u32 step, const struct nm_point *tip,
+				   lanes h, mask_lanes valid, mask_lanes split, real rounding,
+				   bool fan, struct shell_point *out)
+{
+	/* roots of others are found by splitting */
+	if (PHANTOM_LANES == 1 && !mask_bits(split))
+		shell_evaluate_as(block, step, tip, h, valid, split, rounding, fan, true, out);
+	else
+		shell_evaluate_as(block, step, tip, h, valid, split, rounding, fan, false, out);
 }
 
 /* The part of the window that a root next to a wall has. */
@@ -237,36 +298,49 @@ LANES_NOINLINE real shell_weight(const struct block *block, u32 lane, const stru
 #define PROJECTED_ROUNDS PROJECTED_ROOTS
 #endif
 
+static inline void projected_near(const struct block *block, const struct nm_point *tip,
+				  real rounding, u32 newton_steps, struct near_steps *near)
+{
+	const lanes margin = lanes_all(4 * SOFT_WALL * rounding);
+	u32 step;
+
+	near->steps = 0;
+	for (step = 0; step < PHANTOM_STEPS; step++) {
+		struct lanes3 q = from_corner(block, step, 0, tip);
+		lanes height = lanes3_dot_small(row3_step(&block->face_normal, step), q);
+
+		/* a first guess alone, without a step, may take a tip beside the shell for one in it */
+		near_add(near, step,
+			 (lanes_abs(height) < block->radius[step]) &
+				 within_shell(block, step, q, height, block->lean[step],
+					      newton_steps > 0, margin),
+			 height);
+	}
+}
+
 /*
- * Appends the roots of a step to `list`, patch by patch; returns how many. Adds up the patches whose interval
- * is split.
+ * Appends the roots over the patches of a step to `list`, patch by patch; returns how many. `found`: of those that
+ * are monotone there are any.
  */
 static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
-				 real rounding, u32 newton_steps, u32 first_patch, bool fan,
-				 struct projected_root *list, u32 *splits)
+				 real rounding, u32 first_patch, bool fan,
+				 const struct usual_roots *usual, bool found,
+				 struct projected_root *list)
 {
 	const real soft = SOFT_WALL * rounding;
-	struct lanes3 q = from_corner(block, step, 0, tip);
-	lanes height = lanes3_dot_fitting(row3_step(&block->face_normal, step), q);
-	/* a first guess alone, without a step, may take a tip beside the shell for one in it */
-	mask_lanes candidates = (lanes_abs(height) < block->radius[step]) &
-				within_shell(block, step, q, height, block->lean[step],
-					     newton_steps > 0, lanes_all(4 * soft));
 	struct shell_point point[PROJECTED_ROUNDS];
 	struct step_roots roots;
-	struct cubic c;
-	u32 rounds, split, any = 0, count = 0, i;
+	u32 rounds = found, split = mask_bits(usual->split), any = 0, count = 0, i;
 
-	if (!mask_bits(candidates))
-		return 0;
-	c = shell_cubic(block, step, q, height);
-	rounds = find_roots(block, step, &c, candidates, rounding, newton_steps, &roots);
-	split = mask_bits(roots.split);
-	if (split)
-		*splits += mask_count(roots.split);
+	if (found) {
+		roots.h[0] = usual->h;
+		roots.sign[0] = usual->sign;
+		roots.valid[0] = usual->valid;
+	}
+	roots.split = usual->split;
 #ifndef PHANTOM_REAL_SINGLE
 	if (split)
-		rounds = find_split_roots(block, step, &c, rounding, rounds, &roots);
+		rounds = find_split_roots(block, step, tip, &usual->c, rounding, rounds, &roots);
 	split = 0;
 #endif
 	for (i = 0; i < rounds; i++) {
@@ -304,18 +378,42 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 	return count;
 }
 
-/* The roots over a block, patch by patch; returns how many. Adds up the patches whose interval is split. */
-static inline u32 projected_block(const struct phantom_float_set *set, u32 block,
+/*
+ * The roots over a block, patch by patch; returns how many. Adds up the patches whose interval is split.
+ *
+ * Each stage is done for all steps before the next one: within a stage they do not wait for one another, from one
+ * to the next they do.
+ */
+static inline u32 projected_block(const struct phantom_float_set *set, u32 index,
 				  const struct nm_point *tip, u32 newton_steps,
 				  struct projected_root *list, u32 *splits)
 {
-	bool fan = block >= set->block_count;
-	u32 count = 0, step;
+	const struct block *block = &set->blocks[index];
+	const real rounding = rounding_mm(set);
+	struct usual_roots roots[PHANTOM_STEPS];
+	struct near_steps near;
+	u32 found = 0, count = 0, left, step, i;
 
-	for (step = 0; step < PHANTOM_STEPS; step++)
-		count += projected_step(&set->blocks[block], step, tip, rounding_mm(set),
-					newton_steps, block * PHANTOM_BLOCK + step * PHANTOM_LANES,
-					fan, &list[count], splits);
+	projected_near(block, tip, rounding, newton_steps, &near);
+	for (left = near.steps; left; left &= left - 1) {
+		step = (u32)__builtin_ctz(left);
+		roots[step].c = shell_cubic(block, step, from_corner(block, step, 0, tip),
+					    near.height[step]);
+		found |= (u32)guess_roots(block, step, near.mask[step], rounding, &roots[step])
+			 << step;
+		*splits += mask_count(roots[step].split);
+	}
+	for (i = 0; i < newton_steps; i++)
+		for (left = found; left; left &= left - 1) {
+			step = (u32)__builtin_ctz(left);
+			improve_roots(block, step, rounding, &roots[step]);
+		}
+	for (left = near.steps; left; left &= left - 1) {
+		step = (u32)__builtin_ctz(left);
+		count += projected_step(
+			block, step, tip, rounding, index * PHANTOM_BLOCK + step * PHANTOM_LANES,
+			index >= set->block_count, &roots[step], found >> step & 1, &list[count]);
+	}
 	return count;
 }
 

@@ -9,8 +9,7 @@
  * the next section. Pieces are always done in the same order: where sections end changes no bit.
  *
  *   projected   BLOCKS  roots over faces and fans      paper   BLOCKS   contacts with faces, over fans
- *               SUM                                            PLANES   of the overlap test
- *                                                              FANS     overlapped by faces
+ *               SUM                                            FANS     overlapped by faces
  *                                                              OVERLAP  among faces
  *                                                              SUM
  *
@@ -35,17 +34,16 @@
 #define SHELL_COST_SOFT 2000U /* of a root next to a wall: the window, clipped four times */
 #define SHELL_COST_SUM 30U /* of a root or contact */
 #define SHELL_COST_RIMS 250U /* of sixteen rims, for a root or contact of an open surface */
-#define SHELL_COST_PLANES 40U /* of a step */
+#define SHELL_COST_PLANES 40U /* of a step, once */
 #define SHELL_COST_CROSSED 80U /* a contact against a step */
 
 /* What comes next. */
 #define SHELL_BLOCKS 0U
-#define SHELL_PLANES 1U
-#define SHELL_FANS 2U
-#define SHELL_OVERLAP 3U
-#define SHELL_SUM 4U
-#define SHELL_DONE 5U
-#define SHELL_WEIGHED 6U /* effects/weigh.h */
+#define SHELL_FANS 1U
+#define SHELL_OVERLAP 2U
+#define SHELL_SUM 3U
+#define SHELL_DONE 4U
+#define SHELL_WEIGHED 5U /* effects/weigh.h */
 
 /* Between two sections of a tick; in the set's scratch. */
 struct shell_state {
@@ -177,9 +175,9 @@ static inline u32 shell_projected_sum(const struct phantom_float_job *job,
 			fade = shell_root_fade(job, root);
 			magnitude = mul(magnitude, fade);
 		}
-		state->sum =
-			real3_add(state->sum, real3_scale(root->normal,
-							  root->sign < 0 ? -magnitude : magnitude));
+		state->sum = real3_add(
+			state->sum,
+			real3_scale_fitting(root->normal, root->sign < 0 ? -magnitude : magnitude));
 		state->most = real_max(state->most, material->most);
 		state->forces += magnitude;
 		if (material->damping > 0)
@@ -203,21 +201,34 @@ static inline u32 shell_projected_sum(const struct phantom_float_job *job,
 
 /* ---- paper ---------------------------------------------------------------- */
 
-static inline u32 shell_paper_faces(const struct phantom_float_set *set, u32 block,
+/* As in projected_block(), each stage is done for all steps before the next one. */
+static inline u32 shell_paper_faces(const struct phantom_float_set *set, u32 index,
 				    const struct nm_point *tip, struct shell_state *state)
 {
-	u32 before = state->out.contacts, step;
+	const struct block *block = &set->blocks[index];
+	const real rounding = rounding_mm(set);
+	struct paper_step *steps = &scratch_paper(set)[state->count];
+	u32 before = state->out.contacts, walled = 0, count = 0, i;
+	struct near_steps near;
 
-	for (step = 0; step < PHANTOM_STEPS; step++) {
-		struct paper_step *at = &scratch_paper(set)[state->count];
+	paper_near(block, tip, rounding, &near);
+	for (; near.steps; near.steps &= near.steps - 1) {
+		struct paper_step *at = &steps[walled];
 
-		if (!paper_evaluate(&set->blocks[block], step, tip, rounding_mm(set), at))
-			continue;
-		at->block = block;
-		at->step = step;
-		state->out.contacts += mask_count(at->contact);
-		state->count++;
+		at->block = index;
+		at->step = (u32)__builtin_ctz(near.steps);
+		walled += paper_walls(block, at->step, tip, near.height[at->step],
+				      near.mask[at->step], rounding, at);
 	}
+	for (i = 0; i < walled; i++) {
+		if (!paper_contact(block, steps[i].step, &steps[i]))
+			continue;
+		state->out.contacts += mask_count(steps[i].contact);
+		if (count < i)
+			steps[count] = steps[i];
+		count++;
+	}
+	state->count += count;
 	return SHELL_COST_BLOCK + SHELL_COST_ROOT * (state->out.contacts - before);
 }
 
@@ -240,43 +251,27 @@ static inline u32 shell_paper_blocks(const struct phantom_float_job *job, struct
 		spent += SHELL_COST_BLOCK + SHELL_COST_ROOT * found + SHELL_COST_SPLIT * splits;
 	}
 	if (state->cursor == blocks)
-		shell_next(state, state->count	? SHELL_PLANES
-				  : state->fans ? SHELL_FANS
-						: SHELL_DONE);
-	return spent;
-}
-
-/* One contact alone crosses nothing: the test is left out. */
-static inline u32 shell_planes(const struct phantom_float_job *job, struct shell_state *state)
-{
-	struct nm_point tip = nm_point(job->tip_nm);
-	u32 spent = 0;
-
-	if (state->out.contacts + state->fans < 2) {
-		shell_next(state, SHELL_FANS);
-		return 0;
-	}
-	for (; state->cursor < state->count && spent < SHELL_PIECE; state->cursor++) {
-		overlap_planes(job->set, &scratch_paper(job->set)[state->cursor], &tip);
-		spent += SHELL_COST_PLANES;
-	}
-	if (state->cursor == state->count)
-		shell_next(state, SHELL_FANS);
+		shell_next(state, state->count || state->fans ? SHELL_FANS : SHELL_DONE);
 	return spent;
 }
 
 /* Contacts over fans that have not folded and that no face in contact overlaps move to the front. */
-static inline u32 shell_fans(const struct phantom_float_set *set, struct shell_state *state)
+static inline u32 shell_fans(const struct phantom_float_job *job, struct shell_state *state)
 {
+	const struct phantom_float_set *set = job->set;
 	struct projected_root *roots = scratch_fans(set);
+	struct nm_point tip = nm_point(job->tip_nm);
 	u32 spent = 0;
 
 	while (state->fans_looked_at < state->fans && spent < SHELL_PIECE) {
 		const struct projected_root *root = &roots[state->fans_looked_at++];
 
 		spent += SHELL_COST_SUM + SHELL_COST_CROSSED * state->count;
+		/* the first may need the planes of all */
+		if (state->fans_looked_at == 1)
+			spent += SHELL_COST_PLANES * state->count;
 		if (root->sign > 0 &&
-		    !paper_fan_crossed(set, scratch_paper(set), state->count, root))
+		    !paper_fan_crossed(set, scratch_paper(set), state->count, &tip, root))
 			roots[state->cursor++] = *root;
 	}
 	if (state->fans_looked_at == state->fans) {
@@ -294,6 +289,7 @@ static inline u32 shell_overlap(const struct phantom_float_job *job, struct shel
 {
 	const struct phantom_float_set *set = job->set;
 	struct paper_step *steps = scratch_paper(set);
+	struct nm_point tip = nm_point(job->tip_nm);
 	u32 spent = 0, end = state->count * PHANTOM_LANES;
 
 	for (; state->cursor < end && spent < SHELL_PIECE; state->cursor++) {
@@ -303,7 +299,9 @@ static inline u32 shell_overlap(const struct phantom_float_job *job, struct shel
 		if (!at->contact[lane])
 			continue;
 		spent += SHELL_COST_CROSSED * state->count;
-		if (overlap_dropped(set, steps, state->count, at, lane, job->tip_nm)) {
+		if (state->cursor < PHANTOM_LANES)
+			spent += SHELL_COST_PLANES * state->count;
+		if (overlap_dropped(set, steps, state->count, at, lane, &tip)) {
 			at->magnitude[lane] = 0;
 			state->out.contacts--;
 		}
@@ -391,10 +389,8 @@ static inline u32 shell_piece(const struct phantom_float_job *job, struct shell_
 	switch (state->phase) {
 	case SHELL_BLOCKS:
 		return paper ? shell_paper_blocks(job, state) : shell_projected_blocks(job, state);
-	case SHELL_PLANES:
-		return shell_planes(job, state);
 	case SHELL_FANS:
-		return shell_fans(job->set, state);
+		return shell_fans(job, state);
 	case SHELL_OVERLAP:
 		return shell_overlap(job, state);
 	default:

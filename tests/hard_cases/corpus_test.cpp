@@ -102,7 +102,7 @@ TEST(Corpus, AgreesWithTheReference)
             const Reference reference = reference_of(hard, variant);
             for (const auto& [p, expected] : touched(hard, reference, 6)) {
                 for (const phantom_float_ops* ops : sections()) {
-                    if (has_fault(hard, *ops))
+                    if (!hard.fault.empty())
                         continue;
                     const Touch got = Contact(*ops, hard.sets[0], shell_of(variant)).tick(p);
                     SCOPED_TRACE(fmt::format("{}, {}, {} at {}", hard.name, variant.name, ops->name,
@@ -185,7 +185,7 @@ TEST(Corpus, TurnedScaledAndShuffledGivesTheSameForce)
             for (const Change& change : changes) {
                 const Triangles other = changed(hard.sets[0], change, random);
                 for (const phantom_float_ops* ops : sections()) {
-                    if (has_fault(hard, *ops))
+                    if (!hard.fault.empty())
                         continue;
                     Contact a(*ops, hard.sets[0], shell_of(variant)), b(*ops, other, shell_of(variant));
                     for (const Point& point : points) {

@@ -28,6 +28,16 @@ int64_t fixed_probe_mul_sub_fitting(int64_t a, int64_t b, int64_t c, int64_t d)
     return real_mul_sub_fitting(a, b, c, d);
 }
 
+int64_t fixed_probe_mul_small(int64_t a, int64_t b)
+{
+    return real_mul_small(a, b);
+}
+
+int64_t fixed_probe_mul_sum_small(int64_t a, int64_t b, int64_t c, int64_t d, int64_t e, int64_t f)
+{
+    return real_mul_sum_small(a, b, c, d, e, f);
+}
+
 int64_t fixed_probe_divide(int64_t a, int64_t b)
 {
     return real_divide(a, b);
@@ -46,6 +56,16 @@ int64_t fixed_probe_length(int64_t x, int64_t y, int64_t z)
 int64_t fixed_probe_root_of_ratio(int64_t a, int64_t b)
 {
     return lanes_root_of_ratio((lanes){a}, (lanes){b})[0];
+}
+
+void fixed_probe_bring_to_one(int64_t vector[3])
+{
+    lanes a = {vector[0]}, b = {vector[1]}, c = {vector[2]};
+
+    lanes_bring_to_one(&a, &b, &c);
+    vector[0] = a[0];
+    vector[1] = b[0];
+    vector[2] = c[0];
 }
 
 void fixed_probe_unit(int64_t vector[3])

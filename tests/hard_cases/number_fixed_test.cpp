@@ -84,6 +84,25 @@ TEST(FixedNumber, ProductsThatFitAreTheSameWithoutALookAtTheirSize)
     EXPECT_GT(fitting, samples / 4);
 }
 
+TEST(FixedNumber, ProductsOfSmallFactorsAreTheSameUpToTheirLimit)
+{
+    std::mt19937_64 random(11);
+    const auto small = [&random] {
+        const auto most = std::int64_t{1} << (FIXED_PROBE_BITS + 13);
+        return random() % 16 == 0 ? (random() % 2 ? most - 1 : -most)
+                                  : static_cast<std::int64_t>(random()) >> (63 - FIXED_PROBE_BITS - 13);
+    };
+    for (int i = 0; i < samples; ++i) {
+        const std::int64_t a = small(), b = small(), c = small(), d = small(), e = small(), f = small();
+        const Int128 ab = Int128{a} * b >> FIXED_PROBE_BITS, cd = Int128{c} * d >> FIXED_PROBE_BITS,
+                     ef = Int128{e} * f >> FIXED_PROBE_BITS;
+        ASSERT_EQ(fixed_probe_mul_small(a, b), static_cast<std::int64_t>(ab)) << a << " * " << b;
+        if (saturated(2 * (ab + cd + ef)) == 2 * (ab + cd + ef)) {
+            ASSERT_EQ(fixed_probe_mul_sum_small(a, b, c, d, e, f), static_cast<std::int64_t>(ab + cd + ef));
+        }
+    }
+}
+
 TEST(FixedNumber, QuotientsAreRoundedToZeroAndSaturatedNeverTrapped)
 {
     std::mt19937_64 random(2);
@@ -162,6 +181,31 @@ TEST(FixedNumber, RootsOfRatiosAreWithinThreePartsInATrillion)
     }
     EXPECT_EQ(fixed_probe_root_of_ratio(0, one), 0);
     EXPECT_EQ(fixed_probe_root_of_ratio(one, one), one - 1) << "rounded down";
+}
+
+TEST(FixedNumber, BroughtToOneTheyCompareAsTheyDid)
+{
+    std::mt19937_64 random(12);
+    for (int i = 0; i < samples; ++i) {
+        const int shift = static_cast<int>(random() % 40);
+        std::array<std::int64_t, 3> v{};
+        for (std::int64_t& a : v)
+            a = std::abs(any_real(random)) >> shift;
+        const std::int64_t largest = *std::max_element(v.begin(), v.end());
+        if (largest == 0)
+            continue;
+        std::array<std::int64_t, 3> scaled = v;
+        fixed_probe_bring_to_one(scaled.data());
+        const std::int64_t one_of_them = *std::max_element(scaled.begin(), scaled.end());
+        ASSERT_GE(one_of_them, one / 2 - 1);
+        ASSERT_LE(one_of_them, one);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            ASSERT_NEAR(scaled[axis], static_cast<long double>(v[axis]) / largest * one_of_them, 2)
+                << v[axis];
+    }
+    std::array<std::int64_t, 3> none{};
+    fixed_probe_bring_to_one(none.data());
+    EXPECT_EQ(none, (std::array<std::int64_t, 3>{}));
 }
 
 TEST(FixedNumber, NanometresComeBack)

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "contact.hpp"
+#include "corpus.hpp"
 #include "shapes_of_interest.hpp"
 
 namespace {
@@ -139,6 +140,72 @@ TEST(Reference, PathsThatEnterSlideAndLeave)
         expect_path_agrees(shape, {reference::Model::paper}, 6);
         expect_path_agrees(shape, {reference::Model::projected}, 6);
     }
+}
+
+/// The fine dent of the corpus: five-fold round the z axis.
+constexpr double dent_radius = 12;
+std::vector<reference::Triangle> fine_dent()
+{
+    return star(3, [](const Vec3& d) { return 10 - 4 * std::exp(-15 * (1 - d[2])); })
+        .triangles(1, dent_radius);
+}
+
+/// From the axis, away from every wall.
+Vec3 beside_axis(double rho, double azimuth, double z)
+{
+    return {rho * std::cos(azimuth), rho * std::sin(azimuth), z};
+}
+
+/// Where on the axis the shells of a ring are a point: under it the force leans, over it it stands upright.
+double focus_of_dent(const Reference& reference)
+{
+    double low = 9.42, high = 9.44;
+    for (int i = 0; i < 40; ++i) {
+        const double z = (low + high) / 2;
+        const Vec3 force = reference.shell(beside_axis(1e-9, 0.3, z)).force;
+        (std::hypot(force[0], force[1]) > 0.3 * dent_radius ? low : high) = z;
+    }
+    return low;
+}
+
+constexpr std::array<double, 3> azimuths{0.3, 1.7, 4.4};
+
+TEST(Focus, OfARingHasAForceThatDependsOnTheDirectionAloneSoItJumps)
+{
+    const Reference reference(fine_dent(), {});
+    const double z = focus_of_dent(reference);
+    std::vector<Vec3> limits;
+    for (const double elevation : {-1.2, -0.1, 0.4, 1.4})
+        for (const double azimuth : azimuths) {
+            const auto at = [&](double rho) {
+                return scale(1 / dent_radius, reference
+                                                  .shell(beside_axis(rho * std::cos(elevation), azimuth,
+                                                                     z + rho * std::sin(elevation)))
+                                                  .force);
+            };
+            const Vec3 near = at(1e-5), nearer = at(1e-6);
+            EXPECT_LT(length(subtract(near, nearer)), 0.005) << elevation << ' ' << azimuth;
+            limits.push_back(nearer);
+        }
+    double apart = 0;
+    for (const Vec3& a : limits)
+        for (const Vec3& b : limits)
+            apart = std::max(apart, length(subtract(a, b)));
+    EXPECT_GT(apart, 1.0) << "kR, from one side of the axis to the other";
+}
+
+TEST(Focus, IsPassedAlongTheAxisWithTheJumpThatTheCorpusAllows)
+{
+    const Reference reference(fine_dent(), {});
+    const double z = focus_of_dent(reference);
+    double most = 0;
+    for (const double azimuth : azimuths) {
+        const Vec3 below = reference.shell(beside_axis(1e-9, azimuth, z - 1e-4)).force;
+        const Vec3 above = reference.shell(beside_axis(1e-9, azimuth, z + 1e-4)).force;
+        most = std::max(most, length(subtract(above, below)) / dent_radius);
+    }
+    EXPECT_LT(most, focus_step);
+    EXPECT_GT(most, focus_step - 0.05);
 }
 
 } // namespace

@@ -44,11 +44,6 @@ std::span<const std::uint32_t> proxies_of(const Case& hard)
     return std::span(both).first(hard.penetrates ? 2 : 1);
 }
 
-bool has_fault(const Case& hard, const phantom_float_ops& ops)
-{
-    return !hard.fault.empty() && (!hard.fault_in_fixed || ops.isa == PHANTOM_ISA_FIXED);
-}
-
 double rounding_of(const phantom_float_ops& ops, const Case& hard)
 {
     const double micronewton = 1e-6 / (hard.stiffness * hard.radius); // forces are whole ones
@@ -290,7 +285,7 @@ std::vector<std::string> broken(const Case& hard, const phantom_float_ops& ops, 
         out.push_back(fmt::format("{} results were no number", m.not_numbers));
     if (m.wrapped > 0)
         out.push_back(fmt::format("{} forces wrapped", m.wrapped));
-    if (has_fault(hard, ops))
+    if (!hard.fault.empty())
         return out;
     if (m.excess > 1 + rounding_of(ops, hard) && !hard.saturates)
         out.push_back(fmt::format("|F| is {:.6f} k (R + depth)", m.excess));

@@ -30,9 +30,6 @@ inline constexpr std::uint32_t exact_steps = 2;
 /// The proxies that a case is run with: `constrained`, and `paper` too where the tip goes inside.
 std::span<const std::uint32_t> proxies_of(const Case& hard);
 
-/// Has the case a known fault with that arithmetic?
-bool has_fault(const Case& hard, const phantom_float_ops& ops);
-
 /// What rounding may do to a force, as a part of kR.
 double rounding_of(const phantom_float_ops& ops, const Case& hard);
 

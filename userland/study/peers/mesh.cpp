@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "base/vector.hpp"
@@ -50,12 +51,12 @@ constexpr int icosahedron_faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {
 template <typename T>
 void reserve_large_pages(std::vector<T>& elements, std::size_t count)
 {
-    constexpr std::uintptr_t page = std::uintptr_t{2} << 20;
+    constexpr std::size_t page = std::size_t{2} << 20;
     elements.reserve(count);
-    const auto begin = (reinterpret_cast<std::uintptr_t>(elements.data()) + page - 1) / page * page;
-    const auto end = reinterpret_cast<std::uintptr_t>(elements.data() + count) / page * page;
-    if (begin < end)
-        madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // advice: may be declined
+    void* begin = elements.data();
+    std::size_t bytes = count * sizeof(T);
+    if (std::align(page, page, begin, bytes))
+        madvise(begin, bytes / page * page, MADV_HUGEPAGE); // advice: may be declined
 }
 
 /// One triangle of the unit sphere, cut into f^2, with the bumps.
