@@ -5,20 +5,9 @@
 #include <vtkNew.h>
 #include <vtkStaticCellLocator.h>
 
+#include "fdh/pose.hpp"
+
 namespace phantom::view {
-
-namespace {
-
-/// The pose backward: world to object frame.
-Vec3 to_local(const fdh::Pose& pose, const Vec3& world)
-{
-    const Vec3 at = world - pose.translation;
-    const auto& r = pose.rotation;
-    return {r[0] * at[0] + r[3] * at[1] + r[6] * at[2], r[1] * at[0] + r[4] * at[1] + r[7] * at[2],
-            r[2] * at[0] + r[5] * at[1] + r[8] * at[2]};
-}
-
-} // namespace
 
 struct SurfacePicker::Part {
     fdh::Pose pose;
