@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "fdh/large_memory.hpp"
 #include "fdh/leaf.hpp"
 #include "fdh/order.hpp"
 #include "fdh/parallel.hpp"
@@ -108,10 +109,10 @@ Bounds bounds(const MeshView& mesh, unsigned threads)
 using GridVertex = std::array<float, 4>;
 
 /// All vertices; what stands where no triangle looks is no matter.
-std::vector<GridVertex> grid_vertices(const MeshView& mesh, const Grid& grid, unsigned threads)
+LargeArray<GridVertex> grid_vertices(const MeshView& mesh, const Grid& grid, unsigned threads)
 {
-    std::vector<GridVertex> vertices(mesh.vertices.size());
-    parallel_for(0, vertices.size(), threads, [&](std::size_t begin, std::size_t end) {
+    auto vertices = large_array<GridVertex>(mesh.vertices.size());
+    parallel_for(0, mesh.vertices.size(), threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; i++) {
             const auto v = grid.round(mesh.vertices[i]);
             vertices[i] = {v[0], v[1], v[2], 0};
@@ -121,8 +122,7 @@ std::vector<GridVertex> grid_vertices(const MeshView& mesh, const Grid& grid, un
 }
 
 /// Of each triangle three times its centroid, in steps: the factor cancels.
-Centres centres_of(std::span<const Triangle> triangles, std::span<const GridVertex> vertices,
-                   unsigned threads)
+Centres centres_of(std::span<const Triangle> triangles, const GridVertex* vertices, unsigned threads)
 {
     Centres centres(triangles.size());
     parallel_for(0, centres.size(), threads, [&](std::size_t begin, std::size_t end) {
@@ -149,7 +149,7 @@ struct LeafSums {
 /// Fills a leaf with triangles, lanes in their order. Returns its hull.
 template <int K>
 Hull<K> fill_leaf(Leaf& leaf, std::span<const std::uint32_t> numbers, std::span<const Triangle> triangles,
-                  std::span<const GridVertex> vertices, const LeafKernels<K>& kernels, LeafSums& sums)
+                  const GridVertex* vertices, const LeafKernels<K>& kernels, LeafSums& sums)
 {
     alignas(64) Corners corners;
     const std::size_t count = numbers.size();
@@ -243,22 +243,16 @@ namespace {
 template <int K>
 struct Storage {
     Storage(std::size_t node_count, std::size_t leaf_count)
-        : nodes(static_cast<Node<K>*>(allocate(node_count * sizeof(Node<K>)))),
-          leaves(static_cast<Leaf*>(allocate(leaf_count * sizeof(Leaf))))
+        : nodes(large_array<Node<K>>(node_count)), leaves(large_array<Leaf>(leaf_count))
     {
     }
-    struct Release {
-        void operator()(void* memory) const { ::operator delete (memory, std::align_val_t{64}); }
-    };
-    static void* allocate(std::size_t bytes) { return ::operator new (bytes, std::align_val_t{64}); }
-
-    std::unique_ptr<Node<K>, Release> nodes;
-    std::unique_ptr<Leaf, Release> leaves;
+    LargeArray<Node<K>> nodes;
+    LargeArray<Leaf> leaves;
 };
 
 /// Makes the tree of the triangles in the order that number(i) tells.
 template <int K, class Number>
-void fill(TreeData<K>& data, std::span<const Triangle> triangles, std::span<const GridVertex> vertices,
+void fill(TreeData<K>& data, std::span<const Triangle> triangles, const GridVertex* vertices,
           const Number& number, unsigned threads, Isa isa)
 {
     const LeafKernels<K>& kernels = leaf_kernels<K>(isa);
@@ -326,10 +320,11 @@ TreeData<K> build_tree(const MeshView& mesh, unsigned threads, Isa isa)
     const Bounds box = bounds(mesh, threads);
     data.grid = Grid::over(box.low, box.high);
     const auto vertices = grid_vertices(mesh, data.grid, threads);
-    Centres centres = centres_of(mesh.triangles, vertices, threads);
+    Centres centres = centres_of(mesh.triangles, vertices.get(), threads);
     order_by_halves(centres, threads, isa);
     fill(
-        data, mesh.triangles, vertices, [&](std::size_t i) { return centres.number()[i]; }, threads, isa);
+        data, mesh.triangles, vertices.get(), [&](std::size_t i) { return centres.number()[i]; }, threads,
+        isa);
     return data;
 }
 
@@ -347,7 +342,7 @@ TreeData<K> refit_tree(const TreeData<K>& old, const MeshView& mesh, unsigned th
     data.grid = Grid::over(box.low, box.high);
     const auto vertices = grid_vertices(mesh, data.grid, threads);
     fill(
-        data, mesh.triangles, vertices,
+        data, mesh.triangles, vertices.get(),
         [&](std::size_t i) { return old.leaves[i / lanes].triangle[i % lanes] & ~needle_flag; }, threads,
         isa);
     return data;

@@ -43,7 +43,7 @@ struct alignas(64) Leaf {
 inline constexpr std::uint32_t needle_flag = 0x80000000u;
 /// Where the sine of the largest angle is below this. A thin triangle with a short edge is none: its angles
 /// at that edge are wide.
-inline constexpr double needle_sine = 0.125;
+inline constexpr double needle_sine = 0.25;
 inline constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
 
 /// How many levels of nodes stand above so many leaves, and where each begins. Level 0 is the lowest; the

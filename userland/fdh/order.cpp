@@ -2,8 +2,6 @@
 #include "fdh/order.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <new>
 
 #include "fdh/layout.hpp"
 #include "fdh/parallel.hpp"
@@ -105,25 +103,18 @@ class Halver {
 
 } // namespace
 
-void Centres::Release::operator()(void* memory) const
-{
-    std::free(memory);
-}
-
 Centres::Centres(std::size_t size) : size_(size)
 {
     constexpr std::size_t line = 64 / sizeof(float);
     const std::size_t column = (size + line) / line * line;
-    memory_.reset(std::aligned_alloc(64, 8 * column * sizeof(float)));
-    if (!memory_)
-        throw std::bad_alloc();
-    auto* floats = static_cast<float*>(memory_.get());
+    memory_ = large_array<float>(8 * column);
     for (std::size_t i = 0; i < 3; i++) {
-        columns_.axis[i] = floats + i * column;
-        columns_.spare_axis[i] = floats + (4 + i) * column;
+        columns_.axis[i] = memory_.get() + i * column;
+        columns_.spare_axis[i] = memory_.get() + (4 + i) * column;
     }
-    columns_.number = reinterpret_cast<std::uint32_t*>(floats + 3 * column);
-    columns_.spare_number = reinterpret_cast<std::uint32_t*>(floats + 7 * column);
+    // Floats and numbers are of one size; each column is only ever one of them.
+    columns_.number = reinterpret_cast<std::uint32_t*>(memory_.get() + 3 * column);
+    columns_.spare_number = reinterpret_cast<std::uint32_t*>(memory_.get() + 7 * column);
 }
 
 void order_by_halves(Centres& centres, unsigned threads, Isa isa)

@@ -8,9 +8,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
 #include "fdh/isa.hpp"
+#include "fdh/large_memory.hpp"
 
 namespace phantom::fdh {
 
@@ -32,11 +32,8 @@ class Centres {
     [[nodiscard]] const Columns& columns() const { return columns_; }
 
   private:
-    struct Release {
-        void operator()(void* memory) const;
-    };
     std::size_t size_;
-    std::unique_ptr<void, Release> memory_;
+    LargeArray<float> memory_;
     Columns columns_{};
 };
 

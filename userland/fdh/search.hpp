@@ -19,7 +19,7 @@ namespace phantom::fdh {
 
 /// Of a distance computed in float, relative to the distance plus the longest edge of the mesh. The analysis
 /// stands at TriangleDistance.
-inline constexpr double float_error = 0x1p-19;
+inline constexpr double float_error = 0x1p-18;
 
 /// Where a search puts what it finds: two arrays side by side. Plain data: it crosses into units compiled for
 /// other instruction sets. `full` is called when fewer than `lanes` + `slack` places are left; it grows the

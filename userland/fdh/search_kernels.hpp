@@ -21,10 +21,11 @@ namespace phantom::fdh {
 /// the second (X - U) is known to 2 u (d + E). On an edge: the parameter is off by 4 u |X| / |U|, which moves
 /// the foot along the edge and the distance by its square, and the difference from the foot by 3 u (d + E).
 /// On the face: the computed normal is turned by at most t = 3 u / sin(U, V), which alters the height by
-/// t |X|, and n X is summed to 3 u |X|. The builder puts the vertex opposite the longest edge first, where
-/// the sine is largest; where it is still below needle_sine = 1/8, the triangle has needle_flag. A foot on
-/// the wrong side of a wall is so by no more than t h + 4 u (d + E), where both cases agree to the square of
-/// that over h, or to itself. Together below 32 u (d + E) = float_error (d + E).
+/// t |X|, and n X is summed to 3 u |X|. The foot's coordinates are differences of products that nearly cancel
+/// for small sines: a foot on the wrong side of a wall is so by no more than 14 u |X| / sin(U, V), where the
+/// distances to face and edge differ by less than that. The builder puts the vertex opposite the longest
+/// edge first, where the sine is largest; where it is still below needle_sine = 1/4, the triangle has
+/// needle_flag. Together below 64 u (d + E) = float_error (d + E).
 template <Isa I>
 struct TriangleDistance {
     using S = Simd<I>;
@@ -50,10 +51,10 @@ struct TriangleDistance {
         Vector whole, fraction;
     };
 
-    /// To the segment from 0 to e; p relative to its start.
-    static V to_segment(const Vector& p, const Vector& e)
+    /// To the segment from 0 to e; p relative to its start, pe = p·e, ee = e².
+    static V to_segment(const Vector& p, const Vector& e, V pe, V ee)
     {
-        const V t = S::min(S::max(dot(p, e) / S::max(dot(e, e), S::set(1)), S::set(0)), S::set(1));
+        const V t = S::min(S::max(pe / S::max(ee, S::set(1)), S::set(0)), S::set(1));
         const Vector r = {p.x - t * e.x, p.y - t * e.y, p.z - t * e.z};
         return dot(r, r);
     }
@@ -63,12 +64,16 @@ struct TriangleDistance {
         const V zero = S::set(0), one = S::set(1);
         const Vector u = load(leaf.edge1, lane), v = load(leaf.edge2, lane), w = minus(v, u);
         const Vector p = plus(minus(point.whole, load(leaf.vertex, lane)), point.fraction), q = minus(p, u);
-        const V edges = S::min(to_segment(q, w), S::min(to_segment(p, u), to_segment(p, v)));
+        const V uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), pu = dot(p, u), pv = dot(p, v);
+        const V edges = S::min(to_segment(q, w, dot(q, w), dot(w, w)),
+                               S::min(to_segment(p, u, pu, uu), to_segment(p, v, pv, vv)));
         const Vector n = cross(u, v);
         const V nn = dot(n, n), height = dot(n, p);
         const V plane = height / S::max(nn, one) * height;
-        // Inside all three walls: the smallest of the three is not negative.
-        const V walls = S::min(dot(n, cross(u, p)), S::min(dot(n, cross(p, v)), dot(n, cross(w, q))));
+        // The foot's barycentric coordinates times n²: n·(u×p) and n·(p×v), by Lagrange's identity, and what
+        // is left of n². Inside all three walls the smallest is not negative.
+        const V third = uu * pv - uv * pu, second = vv * pu - uv * pv;
+        const V walls = S::min(S::min(third, second), nn - third - second);
         return S::select(S::both(S::less_equal(zero, walls), S::less_equal(one, nn)), plane, edges);
     }
 };

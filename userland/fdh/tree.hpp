@@ -92,7 +92,7 @@ class TriangleTree {
     void in_box(const Box& box, std::vector<Hit>& out) const;
 
     /// Largest difference between a reported distance d from p and the true one [mesh unit]: 1.04e-7 of the
-    /// mesh's half extent (the longest half side of its box, rounded up to a power of two), 2e-6 of d and of
+    /// mesh's half extent (the longest half side of its box, rounded up to a power of two), 4e-6 of d and of
     /// the longest edge, and 1.5e-14 of p's distance from the mesh's centre.
     [[nodiscard]] double accuracy(const Point& p, double distance) const;
 
