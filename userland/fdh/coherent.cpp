@@ -67,7 +67,9 @@ class CoherentQuery<K>::Sphere {
         const ErrorBound error = tree_->error_from(steps);
         const double left = radius_ - distance(steps, centre_) * step_size;
         const double room = left - 2 * error.at(radius_);
-        if (!(room > 0))
+        // Where the last answer did not fit in, this one would hardly: not worth looking.
+        constexpr double hopeful = 0.95;
+        if (!(room > 0) || room < hopeful * std::min(reach_, collector.limit()))
             return false;
         return collector.search_some<K>(leaves_, room, *tree_->kernels,
                                         search_point<K>(steps, tree_->data.longest_edge, false), step_size,
