@@ -162,8 +162,8 @@ struct Selection {
         std::size_t below = 0, above = c.size; // how many do not exceed these
         for (unsigned round = 0; above - below > few; round++) {
             const std::uint32_t first = low < 0 ? 0 : as_bits(low), last = as_bits(high);
-            if (last - first <= 1)
-                return high; // many equal ones
+            if (last - first <= 1) // many equal ones
+                return low < 0 && zeros(c) >= c.keep ? 0 : high;
             float guess[4];
             std::uint32_t count[4];
             if (round % 2 == 0) {
@@ -187,6 +187,13 @@ struct Selection {
                 }
         }
         return smallest_between(c, low, high, c.keep - below);
+    }
+    static std::size_t zeros(const Candidates& c)
+    {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < c.size; i++)
+            count += c.distance2[i] == 0;
+        return count;
     }
     static constexpr std::size_t few = 16;
     static constexpr float spread[4] = {-6, -2, 2, 6};

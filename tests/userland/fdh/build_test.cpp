@@ -57,6 +57,33 @@ TEST(BuildTest, ManyIdenticalTrianglesEndAndTieByNumber)
     EXPECT_LE(found.coverage, 2);
 }
 
+// More at distance 0 than are wanted, and others farther away.
+TEST(BuildTest, MoreInOnePlaceThanWantedTieByNumber)
+{
+    Mesh mesh = flat_grid(16);
+    const auto others = static_cast<std::uint32_t>(mesh.triangles.size());
+    for (int i = 0; i < 100; i++)
+        mesh.triangles.push_back(mesh.triangles[200]);
+    const auto tree = TriangleTree<14>::build(mesh.view());
+    const auto& t = mesh.triangles[200];
+    Point p{};
+    for (std::uint32_t vertex : t)
+        for (std::size_t axis = 0; axis < 3; axis++)
+            p[axis] += mesh.vertices[vertex][axis] * (vertex == t[0] ? 0.5 : 0.25);
+    Nearest found;
+    for (double radius : {infinity, 4.0}) {
+        tree.nearest(p, 64, radius, found);
+        found.sort();
+        ASSERT_EQ(found.hits.size(), 64u);
+        EXPECT_EQ(found.hits[0].triangle, 200u);
+        for (std::uint32_t i = 0; i < 63; i++) {
+            EXPECT_EQ(found.hits[i + 1].triangle, others + i);
+            EXPECT_EQ(found.hits[i + 1].distance, 0);
+        }
+        EXPECT_EQ(found.coverage, 0);
+    }
+}
+
 TEST(BuildTest, ManyIdenticalPointsEnd)
 {
     Mesh mesh;
