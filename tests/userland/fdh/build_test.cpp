@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 
 #include "fdh/layout.hpp"
@@ -82,6 +83,31 @@ TEST(BuildTest, MoreInOnePlaceThanWantedTieByNumber)
         }
         EXPECT_EQ(found.coverage, 0);
     }
+}
+
+// A pole of a sphere of meridians: all its triangles are at distance 0, as many again at other distances.
+TEST(BuildTest, ThePoleOfAFanTiesByNumber)
+{
+    constexpr std::uint32_t count = 96;
+    Mesh mesh;
+    const auto ring = [&](int i, double radius, double z) {
+        const double angle = 2 * std::numbers::pi * i / count;
+        return Point{radius * std::cos(angle), radius * std::sin(angle), z};
+    };
+    for (int i = 0; i < static_cast<int>(count); i++)
+        mesh.add({0, 0, 10}, ring(i, 1, 9.5), ring(i + 1, 1, 9.5));
+    for (int i = 0; i < static_cast<int>(count); i++)
+        mesh.add(ring(i, 1, 9.5), ring(i, 2, 8), ring(i + 1, 2, 8 + 0.01 * i));
+    const auto tree = TriangleTree<14>::build(mesh.view());
+    Nearest found;
+    tree.nearest({0, 0, 10}, 64, infinity, found);
+    found.sort();
+    ASSERT_EQ(found.hits.size(), 64u);
+    for (std::uint32_t i = 0; i < 64; i++) {
+        EXPECT_EQ(found.hits[i].triangle, i);
+        EXPECT_LE(found.hits[i].distance, tree.accuracy({0, 0, 10}, 0));
+    }
+    EXPECT_EQ(found.coverage, 0);
 }
 
 TEST(BuildTest, ManyIdenticalPointsEnd)
