@@ -50,6 +50,9 @@ int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 
 		return -EINVAL;
 	if (header->effects & ~PHANTOM_EFFECTS_KNOWN)
 		return -EINVAL;
+	/* Before memory is looked at that the caller need not have. */
+	if (header->effect_bytes && !(header->effects & ~PHANTOM_EFFECT_DAMPING))
+		return -EINVAL;
 	for (axis = 0; axis < 3; axis++)
 		if (header->origin_nm[axis] > PHANTOM_POSITION_MAX_NM ||
 		    header->origin_nm[axis] < -PHANTOM_POSITION_MAX_NM)
