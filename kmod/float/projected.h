@@ -160,9 +160,9 @@ static inline u32 find_split_roots(const struct block *block, u32 step, const st
 #endif
 
 /*
- * Is the tip where b and h say, which is so far from it? Floating point may be off by as much as FOUND_AGAIN; fixed
- * point is no farther off than the window is wide, and must not be: next to where shells shrink to a point such
- * roots are as near.
+ * Is the tip where b and h say, which is so far from it? Floating point may be off by as much as
+ * FOUND_AGAIN; fixed point is no farther off than the window is wide, and must not be: next to where
+ * shells shrink to a point such roots are as near.
  */
 LANES_INLINE mask_lanes found_again(struct lanes3 away, lanes radius, real soft)
 {
@@ -319,8 +319,8 @@ static inline void projected_near(const struct block *block, const struct nm_poi
 }
 
 /*
- * Appends the roots over the patches of a step to `list`, patch by patch; returns how many. `found`: of those that
- * are monotone there are any.
+ * Appends the roots over the patches of a step to `list`, patch by patch; returns how many. `found`: of
+ * those that are monotone there are any.
  */
 static inline u32 projected_step(const struct block *block, u32 step, const struct nm_point *tip,
 				 real rounding, u32 first_patch, bool fan,
@@ -381,8 +381,8 @@ static inline u32 projected_step(const struct block *block, u32 step, const stru
 /*
  * The roots over a block, patch by patch; returns how many. Adds up the patches whose interval is split.
  *
- * Each stage is done for all steps before the next one: within a stage they do not wait for one another, from one
- * to the next they do.
+ * Each stage is done for all steps before the next one: within a stage they do not wait for one another,
+ * from one to the next they do.
  */
 static inline u32 projected_block(const struct phantom_float_set *set, u32 index,
 				  const struct nm_point *tip, u32 newton_steps,
