@@ -77,7 +77,7 @@ struct usual_roots {
 	lanes sign, h;
 };
 
-/* Where the root in [-rounding, H] is by a first guess, of the candidate lanes; returns whether there is any. */
+/* Where the root in [-rounding, H] is by a first guess, of the candidate lanes; false if none has one. */
 LANES_INLINE bool guess_roots(const struct block *block, u32 step, mask_lanes candidates,
 			      real rounding, struct usual_roots *roots)
 {

@@ -30,14 +30,11 @@ class CoherentQuery<K>::Sphere {
         const double step_size = tree->data.grid.step, moved = distance(steps, last_) * step_size;
         const double before = std::min(reach_, collector.limit());
         last_ = steps;
-        if (!Tree::near(steps)) {
-            leaves_.clear();
-            tree->collect(p, object, collector);
-            counts.searched++;
-        } else if (from_leaves(steps, object, collector)) {
+        const bool near = Tree::near(steps);
+        if (near && from_leaves(steps, object, collector)) {
             counts.kept++;
-        } else if (moved < most_step * before && std::isfinite(before) && gather(steps, before, moved) &&
-                   from_leaves(steps, object, collector)) {
+        } else if (near && moved < most_step * before && std::isfinite(before) &&
+                   gather(steps, before, moved) && from_leaves(steps, object, collector)) {
             counts.gathered++;
         } else {
             leaves_.clear();
