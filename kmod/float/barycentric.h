@@ -20,7 +20,7 @@
 
 #if PHANTOM_LANES == 1
 
-/* mm^2. Between them one inverse does for all; that of a smaller area might not fit, of a larger one is coarse. */
+/* mm^2. Between them one inverse does for all; that of less might not fit, that of more is coarse. */
 #define BARYCENTRIC_SMALL REAL(1e-6)
 #define BARYCENTRIC_LARGE REAL(100)
 

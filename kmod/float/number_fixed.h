@@ -180,8 +180,8 @@ LANES_INLINE real real_divide(real a, real b)
 }
 
 /*
- * Of a cubic whose terms and heights are scaled so that none is above 1: 2^-56 of that. Nothing in it comes near
- * to the end, 128.
+ * Of a cubic whose terms and heights are scaled so that none is above 1: 2^-56 of that. Nothing in it
+ * comes near to the end, 128.
  */
 #define FINE_BITS 56
 
@@ -496,7 +496,7 @@ LANES_INLINE lanes lanes_root_of_ratio(lanes a, lanes b)
 	return (lanes){(s64)(fixed_high(half, FIXED_ROOT_HALF) >> (61 - FIXED_BITS))};
 }
 
-/* a, b and c, none of them negative, with the largest brought to [1/2, 1]: to be compared with one another. */
+/* a, b and c, none of them negative, with the largest brought to [1/2, 1]: to be compared. */
 LANES_INLINE void lanes_bring_to_one(lanes *a, lanes *b, lanes *c)
 {
 	u64 all = (u64)((*a)[0] | (*b)[0] | (*c)[0] | 1);

@@ -74,7 +74,11 @@ typedef double fine;
 #define mul_sum_small mul_sum
 
 /* a b; `small` where the caller knows that both are. */
-#define mul_known(small, a, b) mul(a, b)
+LANES_INLINE lanes mul_known(bool small, lanes a, lanes b)
+{
+	(void)small;
+	return mul(a, b);
+}
 
 /* a / parts; a power of two. */
 #define lanes_part(a, parts) ((a) * (REAL(1) / (parts)))

@@ -3,9 +3,10 @@
  * overlap.h - `paper`: drops a contact whose open segment D-P is crossed by the triangle of
  * another contact: that triangle stands between the tip and the point it is pushed from.
  *
- * All segments share P, so the plane through P and each edge of a triangle is formed once, when a segment
- * first meets the triangle's plane; a pair then costs four dot products. Crossings within OVERLAP_ENDS of the segment's ends do not count,
- * nor do triangles that share the edge or vertex on which D lies (D lies on them as well).
+ * All segments share P, so the plane through P and each edge of a triangle is formed once, when a
+ * segment first meets the triangle's plane; a pair then costs four dot products. Crossings within
+ * OVERLAP_ENDS of the segment's ends do not count, nor do triangles that share the edge or vertex on
+ * which D lies (D lies on them as well).
  */
 #ifndef PHANTOM_FLOAT_OVERLAP_H
 #define PHANTOM_FLOAT_OVERLAP_H

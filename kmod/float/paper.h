@@ -120,8 +120,8 @@ static inline void paper_near(const struct block *block, const struct nm_point *
 }
 
 /*
- * First of two stages: the walls, of the patches of the mask, which are `height` over their planes. False if the
- * tip is outside one of each of them.
+ * First of two stages: the walls, of the patches of the mask, which are `height` over their planes.
+ * False if the tip is outside one of each of them.
  */
 static inline bool paper_walls(const struct block *block, u32 step, const struct nm_point *tip,
 			       lanes height, mask_lanes contact, real rounding,
@@ -147,8 +147,8 @@ static inline bool paper_walls(const struct block *block, u32 step, const struct
 }
 
 /*
- * The second stage: fills `out` and returns true if any patch of the step is in contact. `out` is valid in the
- * lanes of out->contact only.
+ * The second stage: fills `out` and returns true if any patch of the step is in contact. `out` is
+ * valid in the lanes of out->contact only.
  */
 static inline bool paper_contact(const struct block *block, u32 step, struct paper_step *out)
 {

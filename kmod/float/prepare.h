@@ -243,8 +243,8 @@ static inline void prepare_lean(struct block *block, u32 lane, const struct patc
 
 /*
  * Where no term of c, c' and c'' on [0, H] is larger than TAME_MOST, nor any product of two of them than
- * TAME_PRODUCT_MOST, with the tip in reach: |q| <= R + 2 extent. 1 mm and a doubled m0 are for rounding and for
- * the grid of normals.
+ * TAME_PRODUCT_MOST, with the tip in reach: |q| <= R + 2 extent. 1 mm and a doubled m0 are for rounding
+ * and for the grid of normals.
  */
 #define TAME_MOST WIDE(1 << 12)
 #define TAME_PRODUCT_MOST WIDE(1 << 24)
