@@ -39,8 +39,6 @@ class NearestCollector {
     [[nodiscard]] bool search_some(std::span<const Leaf> leaves, double room, const SearchKernels<K>& kernels,
                                    const SearchPoint<K>& point, double step, std::uint32_t object,
                                    const ErrorBound& error);
-    /// How far the answer reaches by now: to the farthest kept, or the limit if there are fewer.
-    [[nodiscard]] double reach() const { return limit(); }
 
     /// Cuts to `count` and computes the coverage. The collector is done then.
     void finish();

@@ -2,8 +2,8 @@
 // The order of the triangles in the leaves: halved again and again along the longest axis of their centres,
 // at whole subtrees of sixteen, so that every leaf and every node is full.
 //
-// Halving by count instead of by surface area costs a few per cent more visited leaves on meshes of very
-// uneven faces, and buys a tree without references, a third smaller, built twice as fast.
+// Halving by count instead of by surface area buys a tree without references, every lane in use, 44 bytes a
+// triangle. It heeds no face's size: a large one among small ones makes its leaf's hull large.
 #pragma once
 
 #include <cstddef>

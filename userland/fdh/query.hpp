@@ -47,8 +47,8 @@ struct Nearest {
         distance_error = 0;
         counts = {};
     }
-    /// Orders the hits by ascending (distance, object, triangle). A query leaves that out because it would
-    /// take as long again. Does not allocate once it has sorted as many.
+    /// Orders the hits by ascending (distance, object, triangle). A query leaves that out because not
+    /// everyone needs it. Does not allocate once it has sorted as many.
     void sort();
     std::vector<Hit> sorted; ///< sort()'s own
 };
