@@ -3,30 +3,19 @@
 // kernels_<isa>.cpp; see the rules in search_kernels.hpp.
 #pragma once
 
+#include "fdh/lane_math.hpp"
 #include "fdh/leaf.hpp"
-#include "fdh/simd.hpp"
 
 namespace phantom::fdh {
 
 template <Isa I, int K>
-struct LeafMaker {
+struct LeafMaker : LaneMath<I> {
     using S = Simd<I>;
     using V = typename S::Float;
+    using typename LaneMath<I>::Vector;
+    using LaneMath<I>::dot, LaneMath<I>::minus, LaneMath<I>::cross, LaneMath<I>::load;
 
-    struct Vector {
-        V x, y, z;
-    };
-    static V dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-    static Vector minus(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
     static V length2(const Vector& a) { return dot(a, a); }
-    static Vector cross(const Vector& a, const Vector& b)
-    {
-        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    }
-    static Vector load(const float (&field)[3][lanes], int lane)
-    {
-        return {S::load(field[0] + lane), S::load(field[1] + lane), S::load(field[2] + lane)};
-    }
     static void store(float (&field)[3][lanes], int lane, const Vector& v)
     {
         S::store(field[0] + lane, v.x);

@@ -6,8 +6,8 @@
 
 #include <cstddef>
 
+#include "fdh/lane_math.hpp"
 #include "fdh/search.hpp"
-#include "fdh/simd.hpp"
 
 namespace phantom::fdh {
 
@@ -27,24 +27,11 @@ namespace phantom::fdh {
 /// edge first, where the sine is largest; where it is still below needle_sine = 1/4, the triangle has
 /// needle_flag. Together below 64 u (d + E) = float_error (d + E).
 template <Isa I>
-struct TriangleDistance {
+struct TriangleDistance : LaneMath<I> {
     using S = Simd<I>;
     using V = typename S::Float;
-
-    struct Vector {
-        V x, y, z;
-    };
-    static V dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-    static Vector minus(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    static Vector plus(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    static Vector cross(const Vector& a, const Vector& b)
-    {
-        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-    }
-    static Vector load(const float (&field)[3][lanes], int lane)
-    {
-        return {S::load(field[0] + lane), S::load(field[1] + lane), S::load(field[2] + lane)};
-    }
+    using typename LaneMath<I>::Vector;
+    using LaneMath<I>::dot, LaneMath<I>::minus, LaneMath<I>::plus, LaneMath<I>::cross, LaneMath<I>::load;
 
     /// The query point in every lane.
     struct Point {
