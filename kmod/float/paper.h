@@ -130,6 +130,8 @@ static inline bool paper_walls(const struct block *block, u32 step, const struct
 	struct lanes3 q = from_corner(block, step, 0, tip);
 	u32 i;
 
+	/* one lane after the other leaves early, and the compiler does not unroll that by itself */
+#pragma GCC unroll 3
 	for (i = 0; i < 3; i++) {
 		struct paper_wall *wall = &out->wall[i];
 

@@ -290,23 +290,26 @@ static inline u32 shell_overlap(const struct phantom_float_job *job, struct shel
 	const struct phantom_float_set *set = job->set;
 	struct paper_step *steps = scratch_paper(set);
 	struct nm_point tip = nm_point(job->tip_nm);
-	u32 spent = 0, end = state->count * PHANTOM_LANES;
+	const u32 end = state->count * PHANTOM_LANES, cost = SHELL_COST_CROSSED * state->count;
+	u32 cursor = state->cursor, spent = 0;
 
-	for (; state->cursor < end && spent < SHELL_PIECE; state->cursor++) {
-		struct paper_step *at = &steps[state->cursor / PHANTOM_LANES];
-		u32 lane = state->cursor % PHANTOM_LANES;
+	/* the first contacts may need the planes of all */
+	if (!cursor)
+		spent += SHELL_COST_PLANES * PHANTOM_LANES * state->count;
+	for (; cursor < end && spent < SHELL_PIECE; cursor++) {
+		struct paper_step *at = &steps[cursor / PHANTOM_LANES];
+		u32 lane = cursor % PHANTOM_LANES;
 
 		if (!at->contact[lane])
 			continue;
-		spent += SHELL_COST_CROSSED * state->count;
-		if (state->cursor < PHANTOM_LANES)
-			spent += SHELL_COST_PLANES * state->count;
+		spent += cost;
 		if (overlap_dropped(set, steps, state->count, at, lane, &tip)) {
 			at->magnitude[lane] = 0;
 			state->out.contacts--;
 		}
 	}
-	if (state->cursor == end)
+	state->cursor = cursor;
+	if (cursor == end)
 		shell_next(state, SHELL_SUM);
 	return spent;
 }
