@@ -393,8 +393,7 @@ struct phantom_start {
  */
 #define PHANTOM_PATCH_RIM 3
 struct phantom_patch {
-	__s32 vertex_nm[3]
-		       [3]; /* [corner][axis], relative to the origin: the set's or its object's */
+	__s32 vertex_nm[3][3]; /* [corner][axis], relative to the origin of set or object */
 	__s32 normal_q30[3][3]; /* [corner][axis], unit */
 	__u32 vertex[3]; /* vertex numbers, unique in the scene: equal = the same corner */
 	__u32 face; /* face number, unique in the scene and the same in every set of a level */
