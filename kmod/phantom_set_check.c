@@ -176,7 +176,7 @@ int phantom_set_check_arrays(struct phantom_set_copy *copy)
 			return -EINVAL;
 		effects |= copy->materials[i].effects;
 	}
-	if (effects != (header->effects & ~PHANTOM_EFFECTS_SPACE) || phantom_effects_check(copy))
+	if (effects != (header->effects & PHANTOM_EFFECTS_SURFACE) || phantom_effects_check(copy))
 		return -EINVAL;
 	for (i = 0; i < header->object_count; i++) {
 		if (!phantom_check_object(&copy->objects[i]))
