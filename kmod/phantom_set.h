@@ -23,6 +23,9 @@
 
 #define PHANTOM_SLOTS 4
 
+/* Of a set: the scene's is 0, then one for each object that moves. */
+#define PHANTOM_FRAMES (1 + PHANTOM_MOVING_MAX)
+
 #define PHANTOM_SLOT_FREE 0U
 #define PHANTOM_SLOT_HELD 1U
 
@@ -72,6 +75,8 @@ struct phantom_set_copy {
 	/* by phantom_set_check_arrays() */
 	u32 face_count; /* patches of kind FACE: they come first */
 	u32 rim_count; /* patches of kind RIM: they come last */
+	u32 frame_count;
+	u32 frame[PHANTOM_OBJECTS_MAX]; /* of each object */
 	struct phantom_effects effects; /* the tables */
 };
 
