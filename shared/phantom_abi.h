@@ -179,14 +179,9 @@
  *                          reserved not zero, radius 0 in a material, vertices or centre
  *                          beyond +-1 m of the origin, the origin beyond
  *                          PHANTOM_POSITION_MAX_NM
-<<<<<<< HEAD
- *                 ENOMEM   no memory (the first sets after open, after a change of arithmetic or
- *                          with longer tables only; memory is reused). The set in use stays
-=======
  *                 ENOMEM   no memory (the first sets after open, after a change of arithmetic, with
- *                          longer tables or more moving objects only; slots are reused). The set in
+ *                          longer tables or more moving objects only; memory is reused). The set in
  *                          use stays
->>>>>>> main
  *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
  *                 EINVAL   beyond PHANTOM_POSITION_MAX_NM, reserved not zero
@@ -531,7 +526,6 @@ struct phantom_guide {
 };
 
 /*
-<<<<<<< HEAD
  * PHANTOM_EFFECT_FIELD: forces at the nodes of a grid along the scene's axes, between them trilinear,
  * outside of it none; at its border it fades. Behind the struct follow the nodes,
  * __s32 force_un[nodes[2]][nodes[1]][nodes[0]][3], and one zero __s32 if their number is odd. Along every
@@ -552,14 +546,12 @@ struct phantom_tip {
 	__u32 reserved;
 };
 
-/* Where an object is. v1: rotation (1,0,0,0), all else zero but number and revision. */
-=======
+/*
  * Where an object is. One that rests has its patches in the scene, relative to the set's origin: rotation
  * (1,0,0,0), all else zero but number and revision.
  */
 #define PHANTOM_OBJECT_MOVES (1U << 0) /* MOVING OBJECTS above */
 #define PHANTOM_OBJECT_FLAGS_KNOWN PHANTOM_OBJECT_MOVES
->>>>>>> main
 struct phantom_object {
 	__u32 object; /* number in the scene */
 	__u32 revision; /* of its geometry; another number crossfades */
