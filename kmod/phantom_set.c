@@ -16,11 +16,14 @@ void phantom_set_destroy(struct phantom_sets *sets)
 {
 	int i, f;
 
-	for (i = 0; i < PHANTOM_SLOTS; i++)
+	for (i = 0; i < PHANTOM_SLOTS; i++) {
 		for (f = 0; f < PHANTOM_FRAMES; f++)
 			vfree(sets->slot[i].frame[f].floats);
+		vfree(sets->slot[i].tables);
+	}
 	vfree(sets->copy.patches);
 	vfree(sets->copy.room);
+	vfree(sets->copy.tables);
 	mutex_destroy(&sets->submitting);
 	memset(sets, 0, sizeof(*sets));
 }
@@ -29,6 +32,25 @@ void phantom_set_destroy(struct phantom_sets *sets)
 static u32 phantom_set_capacity(u32 patch_count)
 {
 	return max_t(u32, patch_count, PHANTOM_PATCHES_MAX);
+}
+
+static int phantom_set_copy_tables(struct phantom_set_copy *copy)
+{
+	const struct phantom_set *header = &copy->header;
+
+	if (copy->table_room < header->effect_bytes) {
+		vfree(copy->tables);
+		WRITE_ONCE(copy->table_room, 0);
+		copy->tables = vzalloc(header->effect_bytes);
+		if (!copy->tables)
+			return -ENOMEM;
+		WRITE_ONCE(copy->table_room, header->effect_bytes);
+	}
+	if (header->effect_bytes &&
+	    copy_from_user(copy->tables, u64_to_user_ptr(phantom_set_tables(header)),
+			   header->effect_bytes))
+		return -EFAULT;
+	return 0;
 }
 
 static int phantom_set_copy_arrays(struct phantom_sets *sets)
@@ -51,11 +73,9 @@ static int phantom_set_copy_arrays(struct phantom_sets *sets)
 			   header->material_count * sizeof(copy->materials[0])) ||
 	    copy_from_user(copy->objects, u64_to_user_ptr(header->objects),
 			   header->object_count * sizeof(copy->objects[0])) ||
-	    copy_from_user(copy->tables, u64_to_user_ptr(phantom_set_tables(header)),
-			   header->effect_bytes) ||
 	    copy_from_user(copy->patches, u64_to_user_ptr(header->patches), patches))
 		return -EFAULT;
-	return 0;
+	return phantom_set_copy_tables(copy);
 }
 
 static struct phantom_slot *phantom_set_pick(struct phantom_sets *sets)
@@ -75,10 +95,11 @@ void phantom_set_effects(const struct phantom_set_copy *copy, u32 frame,
 	*effects = copy->effects;
 	if (!frame)
 		return;
-	effects->mask &= PHANTOM_EFFECTS_SURFACE;
+	effects->mask &= ~PHANTOM_EFFECTS_SPACE;
 	effects->constant = NULL;
 	effects->viscosity = NULL;
 	effects->guide = NULL;
+	effects->field = NULL;
 	effects->viscosity_count = 0;
 	effects->guide_count = 0;
 }
@@ -164,7 +185,7 @@ static void phantom_set_describe_scene(struct phantom_frame *frame,
 	memcpy(frame->centre_nm, header->centre_nm, sizeof(frame->centre_nm));
 	frame->radius_nm = min_t(u32, header->radius_nm, PHANTOM_COVERAGE_MAX_NM);
 	frame->patch_count = copy->part[0].patch_count;
-	frame->effects = header->effects;
+	frame->effects = header->effects & ~PHANTOM_EFFECT_TIP; /* nothing for the tick to do */
 }
 
 /* The coverage goes along: the ball is where it was in the frame when the set was made. */
@@ -188,6 +209,18 @@ static void phantom_set_describe_mover(struct phantom_frame *frame,
 	frame->patch_count = copy->part[copy->frame[object]].patch_count;
 	frame->effects = header->effects & PHANTOM_EFFECTS_SURFACE;
 	frame->object = copy->objects[object].object;
+}
+
+/* The slot gets the tables, which the float set refers to; the copy gets the slot's memory for others. */
+static void phantom_set_keep_tables(struct phantom_slot *slot, struct phantom_set_copy *copy)
+{
+	u64 *tables = slot->tables;
+	u32 room = slot->table_room;
+
+	slot->tables = copy->tables;
+	copy->tables = tables;
+	WRITE_ONCE(slot->table_room, copy->table_room);
+	WRITE_ONCE(copy->table_room, room);
 }
 
 static void phantom_set_describe(struct phantom_slot *slot, const struct phantom_set_copy *copy)
@@ -244,6 +277,8 @@ struct phantom_slot *phantom_set_fill(struct phantom_sets *sets, const void __us
 	if (error)
 		return ERR_PTR(error);
 	phantom_set_describe(slot, copy);
+	if (copy->header.effect_bytes)
+		phantom_set_keep_tables(slot, copy);
 	return slot;
 }
 
@@ -272,12 +307,14 @@ void phantom_set_forget(struct phantom_sets *sets)
 size_t phantom_set_bytes(const struct phantom_sets *sets)
 {
 	size_t bytes = (size_t)READ_ONCE(sets->copy.capacity) * sizeof(struct phantom_patch) +
-		       READ_ONCE(sets->copy.room_capacity) * PHANTOM_SPLIT_BYTES;
+		       READ_ONCE(sets->copy.room_capacity) * PHANTOM_SPLIT_BYTES +
+		       READ_ONCE(sets->copy.table_room);
 	int i, f;
 
 	for (i = 0; i < PHANTOM_SLOTS; i++) {
 		const struct phantom_float_ops *ops = READ_ONCE(sets->slot[i].ops);
 
+		bytes += READ_ONCE(sets->slot[i].table_room);
 		for (f = 0; ops && f < PHANTOM_FRAMES; f++) {
 			const struct phantom_frame *frame = &sets->slot[i].frame[f];
 			u32 capacity = READ_ONCE(frame->capacity);

@@ -73,6 +73,8 @@ struct phantom_slot {
 	u32 revision[PHANTOM_OBJECTS_MAX];
 	u32 object_frame[PHANTOM_OBJECTS_MAX];
 	const struct phantom_float_ops *ops; /* which prepared the floats, and alone can use them */
+	u64 *tables; /* of effects, as they were submitted; the float sets refer to them */
+	u32 table_room; /* bytes */
 };
 
 /* Where a frame's patches are in the copy. */
@@ -88,7 +90,8 @@ struct phantom_set_copy {
 	struct phantom_set header;
 	struct phantom_material materials[PHANTOM_MATERIALS_MAX];
 	struct phantom_object objects[PHANTOM_OBJECTS_MAX];
-	u64 tables[PHANTOM_EFFECT_BYTES_MAX / sizeof(u64)]; /* header.effect_bytes of them */
+	u64 *tables; /* header.effect_bytes of them; they change places with the slot's */
+	u32 table_room; /* bytes */
 	struct phantom_patch *patches;
 	u32 capacity; /* of patches */
 	/* by phantom_set_split(): the patches frame by frame */

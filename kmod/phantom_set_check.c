@@ -251,7 +251,7 @@ int phantom_set_check_arrays(struct phantom_set_copy *copy)
 			return -EINVAL;
 		effects |= copy->materials[i].effects;
 	}
-	if (effects != (header->effects & ~PHANTOM_EFFECTS_SPACE) || phantom_effects_check(copy))
+	if (effects != (header->effects & PHANTOM_EFFECTS_SURFACE) || phantom_effects_check(copy))
 		return -EINVAL;
 	return phantom_check_objects(copy) && phantom_check_patches(copy) ? 0 : -EINVAL;
 }

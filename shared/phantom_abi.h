@@ -108,13 +108,21 @@
  *   has its parameter in the material. Every other effect has a table, which is there only if the
  *   effect is named. Tables follow the materials in memory, in the order of the effects' bits,
  *   without gaps, set.effect_bytes in all:
- *     surface         its struct once for each material that names it, in the materials' order
- *     CONSTANT        its struct
+ *     surface         its struct once for each material that names it, in the materials' order;
+ *                     each phantom_height_map is followed by its samples
+ *     CONSTANT, TIP   its struct
  *     VISCOSITY, GUIDE  struct phantom_effect_count, then its struct that many times
+ *     FIELD           its struct, then its nodes
  *   Law, source, energy and limits of each stand in kmod/float/effects/. Surface effects act where
  *   there is contact, those of space wherever the set covers the tip, which takes no patches. All of
  *   them fade as contact does; and where a set's effects or tables are not those of the set before
  *   it, the force goes over to the new ones within PHANTOM_FADE_NS.
+ *   TIP makes a ball of the tip, for contact only: tip_nm is its centre. Every material's contact
+ *   radius R counts as R + radius_nm, here and wherever this header says R, but for magnet.range_nm's
+ *   limit. So the force is k (R + radius - d) at a distance d of the centre: what a point feels at d
+ *   the ball feels when its surface is there, as stiff. Coverage must reach that much farther; the
+ *   tip counts as inside when the ball's centre is. Two places of a hollow that is narrower than the
+ *   ball are contacts of their own, added as the model adds them.
  *
  * POLL
  *   POLLIN    a record can be read, or the end of a run has not yet been read.
@@ -172,7 +180,7 @@
  *                          beyond +-1 m of the origin, the origin beyond
  *                          PHANTOM_POSITION_MAX_NM
  *                 ENOMEM   no memory (the first sets after open, after a change of arithmetic, with
- *                          longer tables or more moving objects only; slots are reused). The set in
+ *                          longer tables or more moving objects only; memory is reused). The set in
  *                          use stays
  *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
@@ -247,17 +255,22 @@
 #define PHANTOM_EFFECT_MAGNET (1U << 1) /* struct phantom_magnet */
 #define PHANTOM_EFFECT_FRICTION (1U << 2) /* struct phantom_friction */
 #define PHANTOM_EFFECT_TEXTURE (1U << 3) /* struct phantom_texture */
+#define PHANTOM_EFFECT_HEIGHT_MAP (1U << 4) /* struct phantom_height_map */
+#define PHANTOM_EFFECT_IMPACT (1U << 5) /* struct phantom_impact */
 #define PHANTOM_EFFECT_CONSTANT (1U << 16) /* struct phantom_constant */
 #define PHANTOM_EFFECT_VISCOSITY (1U << 17) /* struct phantom_viscosity */
 #define PHANTOM_EFFECT_GUIDE (1U << 18) /* struct phantom_guide */
+#define PHANTOM_EFFECT_FIELD (1U << 19) /* struct phantom_field */
+#define PHANTOM_EFFECT_TIP (1U << 24) /* struct phantom_tip; of the set, and nowhere a force */
 #define PHANTOM_EFFECTS_SURFACE                                                                    \
 	(PHANTOM_EFFECT_DAMPING | PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION |                \
-	 PHANTOM_EFFECT_TEXTURE)
+	 PHANTOM_EFFECT_TEXTURE | PHANTOM_EFFECT_HEIGHT_MAP | PHANTOM_EFFECT_IMPACT)
 #define PHANTOM_EFFECTS_SPACE                                                                      \
-	(PHANTOM_EFFECT_CONSTANT | PHANTOM_EFFECT_VISCOSITY | PHANTOM_EFFECT_GUIDE)
-#define PHANTOM_EFFECTS_KNOWN (PHANTOM_EFFECTS_SURFACE | PHANTOM_EFFECTS_SPACE)
+	(PHANTOM_EFFECT_CONSTANT | PHANTOM_EFFECT_VISCOSITY | PHANTOM_EFFECT_GUIDE |               \
+	 PHANTOM_EFFECT_FIELD)
+#define PHANTOM_EFFECTS_KNOWN (PHANTOM_EFFECTS_SURFACE | PHANTOM_EFFECTS_SPACE | PHANTOM_EFFECT_TIP)
 
-#define PHANTOM_EFFECT_BYTES_MAX 4096 /* of a set's tables */
+#define PHANTOM_EFFECT_BYTES_MAX 131072 /* of a set's tables */
 #define PHANTOM_REGIONS_MAX 8 /* in each of the tables VISCOSITY and GUIDE */
 #define PHANTOM_EFFECT_FORCE_MAX_UN 100000000 /* 100 N */
 #define PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM 100000 /* 100 N/mm */
@@ -269,6 +282,17 @@
 #define PHANTOM_VISCOSITY_MAX_MNS_M 20000 /* 20 N s/m: stable at 1 kHz from 20 g on */
 #define PHANTOM_DRAG_MAX_MNS2_M2 1000000
 #define PHANTOM_BORDER_MIN_NM 100000 /* 0.1 mm */
+#define PHANTOM_MAP_SIZE_MIN 4 /* samples of a height map, each way */
+#define PHANTOM_MAP_SIZE_MAX 64
+#define PHANTOM_MAP_SPACING_MIN_NM 10000 /* 10 um from sample to sample */
+#define PHANTOM_IMPACT_FREQUENCY_MIN_HZ 10
+#define PHANTOM_IMPACT_FREQUENCY_MAX_HZ 1000
+#define PHANTOM_IMPACT_DECAY_MIN_US 1000
+#define PHANTOM_IMPACT_DECAY_MAX_US 500000
+#define PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ 125 /* a / (2 pi f) at most 20 g */
+#define PHANTOM_FIELD_NODES_MAX 4096
+#define PHANTOM_FIELD_SPACING_MIN_NM 100000 /* 0.1 mm from node to node */
+#define PHANTOM_TIP_RADIUS_MAX_NM 50000000 /* 50 mm */
 
 /* ---- model (CONTACT: contact, combination, proxy, arithmetic) ------------ */
 #define PHANTOM_MODEL_OFF 0 /* the tick runs, the force is zero */
@@ -440,6 +464,32 @@ struct phantom_texture {
 	__s32 wave_per_km[2][3]; /* crests per km along the axes: 1e6 = 1 mm apart */
 };
 
+/*
+ * PHANTOM_EFFECT_HEIGHT_MAP: a tile of heights, repeated in the scene's space without end. It is laid on
+ * surfaces along each of the axes, more of it the more the surface faces that way (triplanar): columns
+ * run along y, x, x and rows along z, z, y where the surface faces x, y, z; sample 0 0 is at 0. Between
+ * samples it is a quadratic spline, which smooths them: h is near a sample, not through it. Behind the
+ * struct follow the heights, __s32 height_nm[rows][columns]. The largest step from one to the next along
+ * rows and that along columns (round the tile) add up to spacing_nm at most: a slope of 1.
+ */
+struct phantom_height_map {
+	__u32 columns; /* PHANTOM_MAP_SIZE_MIN ... _MAX, a power of two */
+	__u32 rows; /* the same */
+	__u32 spacing_nm; /* from sample to sample; PHANTOM_MAP_SPACING_MIN_NM at least */
+	__u32 amplitude_nm; /* no height is farther from 0 */
+};
+
+/*
+ * PHANTOM_EFFECT_IMPACT: where contact begins, the surface rings: at an approach speed v with
+ * min(gain v, force_un) exp(-t / decay) sin(2 pi frequency t).
+ */
+struct phantom_impact {
+	__u32 gain_mns_m; /* at most PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ frequency_hz */
+	__u32 force_un; /* the largest amplitude, at most PHANTOM_EFFECT_FORCE_MAX_UN */
+	__u32 frequency_hz; /* PHANTOM_IMPACT_FREQUENCY_MIN_HZ ... _MAX_HZ */
+	__u32 decay_us; /* PHANTOM_IMPACT_DECAY_MIN_US ... _MAX_US */
+};
+
 /* Tables of space effects. Places are absolute, and near the set's origin: _REACH_MAX_NM. */
 struct phantom_effect_count {
 	__u32 count; /* 1 ... PHANTOM_REGIONS_MAX */
@@ -472,6 +522,27 @@ struct phantom_guide {
 	__u32 stiffness_mn_mm; /* 1 ... PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM */
 	__u32 force_un; /* the most it pulls, 1 ... PHANTOM_EFFECT_FORCE_MAX_UN */
 	__u32 reach_nm; /* it lets go over the last quarter of that distance; 0 = never */
+	__u32 reserved;
+};
+
+/*
+ * PHANTOM_EFFECT_FIELD: forces at the nodes of a grid along the scene's axes, between them trilinear,
+ * outside of it none; at its border it fades. Behind the struct follow the nodes,
+ * __s32 force_un[nodes[2]][nodes[1]][nodes[0]][3], and one zero __s32 if their number is odd. Along every
+ * axis force changes by PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM at most, and is PHANTOM_EFFECT_FORCE_MAX_UN at
+ * most.
+ */
+struct phantom_field {
+	__s64 corner_nm[3]; /* node 0 0 0 */
+	__u32 spacing_nm[3]; /* from node to node; PHANTOM_FIELD_SPACING_MIN_NM at least */
+	__u32 nodes[3]; /* 2 or more; their product is PHANTOM_FIELD_NODES_MAX at most */
+	__u32 border_nm; /* full farther inside; PHANTOM_BORDER_MIN_NM ... half of the shortest side */
+	__u32 reserved;
+};
+
+/* PHANTOM_EFFECT_TIP: EFFECTS above. */
+struct phantom_tip {
+	__u32 radius_nm; /* 1 ... PHANTOM_TIP_RADIUS_MAX_NM; with it no R is above 2^32 - 1 nm */
 	__u32 reserved;
 };
 

@@ -60,10 +60,11 @@ TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
     EXPECT_EQ(error_of("units = \"mm\"\n[[object]]\nmesh = \"part.obj\"\n"),
               "a.toml:1: units: unknown key, expected unit, levels, object, material, device, servo");
     EXPECT_EQ(in_object("colour = \"red\"\n"), "a.toml:3: object 1: colour: unknown key, expected name, "
-                                               "mesh, shape, unit, fit_mm, weld_mm, two_sided, pose, "
-                                               "material");
+                                               "mesh, shape, unit, fit_mm, weld_mm, split_mm, "
+                                               "two_sided, pose, material, materials, motion, deform");
     EXPECT_EQ(error_of("[[object]]\nradius = 3\nshape = \"torus\"\n"),
-              "a.toml:2: object 1: radius: unknown key, expected name, shape, pose, material, two_sided, "
+              "a.toml:2: object 1: radius: unknown key, expected name, shape, split_mm, pose, material, "
+              "two_sided, motion, deform, "
               "radius_mm, tube_radius_mm, chord_mm");
     EXPECT_EQ(below_object("[material.soft]\nstifness_n_mm = 1\n"),
               "a.toml:5: material.soft.stifness_n_mm: unknown key, expected stiffness_n_mm, radius_mm, "
@@ -97,7 +98,7 @@ TEST(SceneFile, WrongTypes)
     EXPECT_EQ(in_object("two_sided = 1\n"), "a.toml:3: object 1: two_sided: is 1, expected true or false");
     EXPECT_EQ(below_object("device = 3\n"),
               "a.toml:4: object 1: device: unknown key, expected name, mesh, shape, "
-              "unit, fit_mm, weld_mm, two_sided, pose, material");
+              "unit, fit_mm, weld_mm, split_mm, two_sided, pose, material, materials, motion, deform");
     EXPECT_EQ(error_of("servo = 1\nobject = 2\n"), "a.toml:1: servo: is 1, expected a table");
     EXPECT_EQ(error_of("object = [1]\n"), "a.toml:1: object 1: expected a table [[object]]");
     EXPECT_EQ(below_object("[material]\nsoft = 1\n"),
