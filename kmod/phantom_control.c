@@ -55,7 +55,8 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 	servo->device = device;
 	servo->features = PHANTOM_FEATURE_MODEL_PAPER | PHANTOM_FEATURE_MODEL_PROJECTED |
 			  PHANTOM_FEATURE_PROXY_PAPER | PHANTOM_FEATURE_PROXY_CONSTRAINED |
-			  PHANTOM_FEATURE_FANS | PHANTOM_FEATURE_CROSSFADE | PHANTOM_FEATURE_RIMS;
+			  PHANTOM_FEATURE_FANS | PHANTOM_FEATURE_CROSSFADE | PHANTOM_FEATURE_RIMS |
+			  PHANTOM_FEATURE_MOVING_OBJECTS;
 	for (arith = 0; arith < PHANTOM_ARITHS; arith++) {
 		servo->ops[arith] = ops[arith];
 		if (ops[arith])

@@ -166,7 +166,7 @@ static void motion_add_offset(const struct phantom_offset *offset, u64 now_ns,
 			      struct phantom_pose *pose)
 {
 	u64 elapsed_ns = now_ns - offset->begin_ns;
-	s64 left, square = 0;
+	s64 left, second, square = 0;
 	s32 turn[4];
 	int axis;
 
@@ -178,10 +178,11 @@ static void motion_add_offset(const struct phantom_offset *offset, u64 now_ns,
 		turn[1 + axis] = motion_round(offset->turn_q30[axis] * left, MOTION_Q);
 		square += (s64)turn[1 + axis] * turn[1 + axis];
 	}
-	/* sqrt(1 - e^2) to e^6 / 16: e is 0.1 at most */
+	/* sqrt(1 - s) = 1 - s/2 - s^2/8 - s^3/16 - ...; s is 0.01 at most, what is left out 4e-10 */
 	square = motion_round(square, MOTION_Q);
-	turn[0] = MOTION_ONE - motion_round(square, 1) -
-		  motion_round(motion_round(square * square, MOTION_Q), 3);
+	second = motion_round(square * square, MOTION_Q);
+	turn[0] = MOTION_ONE - motion_round(square, 1) - motion_round(second, 3) -
+		  motion_round(second * square, MOTION_Q + 4);
 	motion_multiply(turn, pose->rotation_q30, pose->rotation_q30);
 }
 

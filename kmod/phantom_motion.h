@@ -8,8 +8,8 @@
  *
  * Length and direction of w are taken apart once a set. A tick has the half angle as a product that
  * wraps with the turns, sine and cosine from polynomials, and no division but those by constants.
- * Quaternion and matrix are Q1.30: a point a metre from the frame's origin is found to 10 nm, however
- * long the motion goes on.
+ * Quaternion and matrix are Q1.30: a point a metre from the frame's origin is found to 10 nm and 1 nm for
+ * each radian turned since t0, however long the motion goes on.
  *
  * AN OFFSET is what the frame was beside the pose that a new set gives, at the tick that took the set. It
  * goes to nothing in a straight line, so that no pose ever steps:
