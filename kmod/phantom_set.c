@@ -16,9 +16,12 @@ void phantom_set_destroy(struct phantom_sets *sets)
 {
 	int i;
 
-	for (i = 0; i < PHANTOM_SLOTS; i++)
+	for (i = 0; i < PHANTOM_SLOTS; i++) {
 		vfree(sets->slot[i].floats);
+		vfree(sets->slot[i].tables);
+	}
 	vfree(sets->copy.patches);
+	vfree(sets->copy.tables);
 	mutex_destroy(&sets->submitting);
 	memset(sets, 0, sizeof(*sets));
 }
@@ -27,6 +30,25 @@ void phantom_set_destroy(struct phantom_sets *sets)
 static u32 phantom_set_capacity(u32 patch_count)
 {
 	return max_t(u32, patch_count, PHANTOM_PATCHES_MAX);
+}
+
+static int phantom_set_copy_tables(struct phantom_set_copy *copy)
+{
+	const struct phantom_set *header = &copy->header;
+
+	if (copy->table_room < header->effect_bytes) {
+		vfree(copy->tables);
+		WRITE_ONCE(copy->table_room, 0);
+		copy->tables = vzalloc(header->effect_bytes);
+		if (!copy->tables)
+			return -ENOMEM;
+		WRITE_ONCE(copy->table_room, header->effect_bytes);
+	}
+	if (header->effect_bytes &&
+	    copy_from_user(copy->tables, u64_to_user_ptr(phantom_set_tables(header)),
+			   header->effect_bytes))
+		return -EFAULT;
+	return 0;
 }
 
 static int phantom_set_copy_arrays(struct phantom_sets *sets)
@@ -49,11 +71,9 @@ static int phantom_set_copy_arrays(struct phantom_sets *sets)
 			   header->material_count * sizeof(copy->materials[0])) ||
 	    copy_from_user(copy->objects, u64_to_user_ptr(header->objects),
 			   header->object_count * sizeof(copy->objects[0])) ||
-	    copy_from_user(copy->tables, u64_to_user_ptr(phantom_set_tables(header)),
-			   header->effect_bytes) ||
 	    copy_from_user(copy->patches, u64_to_user_ptr(header->patches), patches))
 		return -EFAULT;
-	return 0;
+	return phantom_set_copy_tables(copy);
 }
 
 static struct phantom_slot *phantom_set_pick(struct phantom_sets *sets)
@@ -113,6 +133,18 @@ static u64 phantom_set_print(const struct phantom_set_copy *copy)
 	return print;
 }
 
+/* The slot gets the tables, which the float set refers to; the copy gets the slot's memory for others. */
+static void phantom_set_keep_tables(struct phantom_slot *slot, struct phantom_set_copy *copy)
+{
+	u64 *tables = slot->tables;
+	u32 room = slot->table_room;
+
+	slot->tables = copy->tables;
+	copy->tables = tables;
+	WRITE_ONCE(slot->table_room, copy->table_room);
+	WRITE_ONCE(copy->table_room, room);
+}
+
 static void phantom_set_describe(struct phantom_slot *slot, const struct phantom_set_copy *copy)
 {
 	const struct phantom_set *header = &copy->header;
@@ -123,7 +155,7 @@ static void phantom_set_describe(struct phantom_slot *slot, const struct phantom
 	memcpy(slot->centre_nm, header->centre_nm, sizeof(slot->centre_nm));
 	slot->radius_nm = min_t(u32, header->radius_nm, PHANTOM_COVERAGE_MAX_NM);
 	slot->patch_count = header->patch_count;
-	slot->effects = header->effects;
+	slot->effects = header->effects & ~PHANTOM_EFFECT_TIP; /* nothing for the tick to do */
 	slot->effect_print = phantom_set_print(copy);
 	slot->level = header->level;
 	slot->level_error_nm = header->level_error_nm;
@@ -164,6 +196,8 @@ struct phantom_slot *phantom_set_fill(struct phantom_sets *sets, const void __us
 	if (error)
 		return ERR_PTR(error);
 	phantom_set_describe(slot, copy);
+	if (copy->header.effect_bytes)
+		phantom_set_keep_tables(slot, copy);
 	return slot;
 }
 
@@ -191,13 +225,15 @@ void phantom_set_forget(struct phantom_sets *sets)
 
 size_t phantom_set_bytes(const struct phantom_sets *sets)
 {
-	size_t bytes = (size_t)READ_ONCE(sets->copy.capacity) * sizeof(struct phantom_patch);
+	size_t bytes = (size_t)READ_ONCE(sets->copy.capacity) * sizeof(struct phantom_patch) +
+		       READ_ONCE(sets->copy.table_room);
 	int i;
 
 	for (i = 0; i < PHANTOM_SLOTS; i++) {
 		const struct phantom_float_ops *ops = READ_ONCE(sets->slot[i].ops);
 		u32 capacity = READ_ONCE(sets->slot[i].capacity);
 
+		bytes += READ_ONCE(sets->slot[i].table_room);
 		if (ops && capacity)
 			bytes += ops->set_bytes(capacity) + READ_ONCE(sets->slot[i].effect_room);
 	}

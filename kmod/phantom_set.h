@@ -23,6 +23,9 @@
 
 #define PHANTOM_SLOTS 4
 
+/* Of a set: the scene's is 0, then one for each object that moves. */
+#define PHANTOM_FRAMES (1 + PHANTOM_MOVING_MAX)
+
 #define PHANTOM_SLOT_FREE 0U
 #define PHANTOM_SLOT_HELD 1U
 
@@ -55,7 +58,9 @@ struct phantom_slot {
 	const struct phantom_float_ops *ops; /* which prepared `floats`, and alone can use it */
 	struct phantom_float_set *floats;
 	u32 capacity; /* patches that floats has room for, as ops lays them out */
-	u32 effect_room; /* and bytes of tables */
+	u32 effect_room; /* and bytes of effects */
+	u64 *tables; /* of effects, as they were submitted; the float set refers to them */
+	u32 table_room; /* bytes */
 };
 
 /* The caller's arrays, copied before anything is believed. The submitter's. */
@@ -63,12 +68,15 @@ struct phantom_set_copy {
 	struct phantom_set header;
 	struct phantom_material materials[PHANTOM_MATERIALS_MAX];
 	struct phantom_object objects[PHANTOM_OBJECTS_MAX];
-	u64 tables[PHANTOM_EFFECT_BYTES_MAX / sizeof(u64)]; /* header.effect_bytes of them */
+	u64 *tables; /* header.effect_bytes of them; they change places with the slot's */
+	u32 table_room; /* bytes */
 	struct phantom_patch *patches;
 	u32 capacity; /* of patches */
 	/* by phantom_set_check_arrays() */
 	u32 face_count; /* patches of kind FACE: they come first */
 	u32 rim_count; /* patches of kind RIM: they come last */
+	u32 frame_count;
+	u32 frame[PHANTOM_OBJECTS_MAX]; /* of each object */
 	struct phantom_effects effects; /* the tables */
 };
 

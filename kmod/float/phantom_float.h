@@ -33,17 +33,21 @@ struct phantom_float_set;
 #define PHANTOM_FLOAT_TICK_MAX PHANTOM_PATCHES_MAX
 
 /*
- * A validated set's effect tables, as they lie in the submitter's copy; a table is NULL unless the
- * mask names its effect. Surface effects: an entry for each material that names them.
+ * A validated set's effect tables, as they lie in memory; a table is NULL unless the mask names its
+ * effect. Surface effects: an entry for each material that names them; height maps by material, NULL where
+ * it does not name one. Height maps and field are read by the tick too, as long as the set is in use.
  */
 struct phantom_effects {
 	u32 mask; /* set.effects */
 	const struct phantom_magnet *magnet;
 	const struct phantom_friction *friction;
 	const struct phantom_texture *texture;
+	const struct phantom_height_map *height_map[PHANTOM_MATERIALS_MAX];
+	const struct phantom_impact *impact;
 	const struct phantom_constant *constant;
 	const struct phantom_viscosity *viscosity;
 	const struct phantom_guide *guide;
+	const struct phantom_field *field;
 	u32 viscosity_count;
 	u32 guide_count;
 };

@@ -19,6 +19,16 @@ static int border_copy(struct phantom_set_copy* copy)
     return 0;
 }
 
+/* The tables of the set that was accepted last are kept: float sets refer to them. */
+static u64* border_tables(bool accepted)
+{
+    static u64 tables[2][PHANTOM_EFFECT_BYTES_MAX / sizeof(u64)];
+    static unsigned int next;
+
+    next ^= accepted;
+    return tables[next];
+}
+
 int border_check(const struct phantom_set* set, uint64_t last_id, struct border_set* out)
 {
     static struct phantom_set_copy copy;
@@ -27,6 +37,7 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
 
     memset(&copy, 0, sizeof(copy));
     copy.header = *set;
+    copy.tables = border_tables(false);
     error = phantom_set_check_header(&copy.header, last_id, PHANTOM_PATCHES_MAX);
     if (!error)
         error = border_copy(&copy);
@@ -34,11 +45,13 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
         error = phantom_set_check_arrays(&copy);
     if (error)
         return error;
+    border_tables(true);
     memcpy(out->origin_nm, set->origin_nm, sizeof(out->origin_nm));
     memcpy(out->centre_nm, set->centre_nm, sizeof(out->centre_nm));
     out->radius_nm = min_t(u32, set->radius_nm, PHANTOM_COVERAGE_MAX_NM);
     out->face_count = copy.face_count;
     out->rim_count = copy.rim_count;
+    out->materials = copy.materials;
     out->effects = set->effect_bytes ? &copy.effects : NULL;
     out->reach_nm = 0;
     for (i = 0; i < set->material_count; i++)

@@ -138,7 +138,7 @@ void Section::forget()
 void Section::take(const phantom_set& set, const border_set& border)
 {
     const auto* patches = reinterpret_cast<const phantom_patch*>(set.patches);
-    const auto* materials = reinterpret_cast<const phantom_material*>(set.materials);
+    const phantom_material* materials = border.materials;
     bounds_ = Bounds(materials, set.material_count, patches, set.patch_count);
     border_ = border;
     effects_ = set.effects;

@@ -38,6 +38,11 @@ inline constexpr Range slew_n_per_ms{0.001, 1000.0, "0.001 ... 1000 N/ms"};
 inline constexpr Range ramp_ms{0.0, 10000.0, "0 ... 10000 ms"};
 inline constexpr Range crossfade_ms{1.0, 10000.0, "1 ... 10000 ms"};
 inline constexpr Range rate_hz{1000.0, 10000.0, "1000 ... 10000 Hz"};
+inline constexpr Range motion_mm{0.0, 1000.0, "0 ... 1000 mm"};
+inline constexpr Range motion_hz{0.0, 100.0, "0 ... 100 Hz"};
+inline constexpr Range motion_mm_s{0.0, 2000.0, "no more than 2000 mm/s"};
+inline constexpr Range motion_ramp_s{0.05, 60.0, "0.05 ... 60 s"};
+inline constexpr Range rev_per_s{-10.0, 10.0, "-10 ... 10 revolutions per second"};
 inline constexpr Range angle_deg{-36000.0, 36000.0, "-36000 ... 36000 degrees"};
 
 } // namespace range

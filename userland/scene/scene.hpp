@@ -16,7 +16,9 @@
 #include "mesh/prepare.hpp"
 #include "mesh/rims.hpp"
 #include "scene/cache_key.hpp"
+#include "scene/deformation.hpp"
 #include "scene/effects.hpp"
+#include "scene/motion.hpp"
 
 namespace phantom::scene {
 
@@ -53,6 +55,9 @@ struct Object : Surface {
     fdh::Pose pose;
     std::uint32_t material = 0;                     ///< index into Scene::materials
     std::uint32_t first_face = 0, first_vertex = 0; ///< scene-wide numbers of face 0 and vertex 0
+    /// From `pose` and the mesh as they are here, which is at rest.
+    std::optional<Motion> motion{};
+    std::optional<Deformation> deformation{};
 };
 
 struct DeviceSettings {
