@@ -180,6 +180,8 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 	servo->warned = false;
 	if (!(slot->effects & PHANTOM_EFFECT_FRICTION))
 		servo->touch.stuck = false;
+	if (!(slot->effects & PHANTOM_EFFECT_IMPACT))
+		memset(&servo->touch.ring, 0, sizeof(servo->touch.ring));
 	next->set_time_ns = pass->now_ns;
 	next->isa = slot->ops->isa;
 	next->set_id = slot->id;
@@ -237,6 +239,7 @@ static void phantom_servo_give_stick(struct phantom_servo *servo, const struct p
 	struct phantom_touch *touch = &servo->touch;
 
 	job->period_ns = pass->period_ns;
+	job->ring = touch->ring;
 	job->stick.coefficient_q24 = touch->coefficient_q24;
 	job->stick.held = touch->stuck && phantom_set_relative(servo->active, touch->anchor_nm,
 							       job->stick.anchor_nm);
@@ -289,6 +292,8 @@ static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_p
 		touch->proxy_nm[axis] = slot->origin_nm[axis] + job->proxy_nm[axis];
 	if (slot->effects & PHANTOM_EFFECT_FRICTION)
 		phantom_servo_take_stick(servo);
+	if (slot->effects & PHANTOM_EFFECT_IMPACT)
+		touch->ring = job->ring_next;
 	memcpy(touch->normal_q30, job->normal_q30, sizeof(touch->normal_q30));
 	memcpy(pass->target_un, job->force_un, sizeof(pass->target_un));
 	memcpy(pass->normal_q30, job->normal_q30, sizeof(pass->normal_q30));
