@@ -32,6 +32,7 @@ struct phantom_touch {
 	bool stuck; /* friction holds a stick point: */
 	u32 coefficient_q24; /* struct phantom_stick */
 	s64 anchor_nm[3];
+	struct phantom_ring ring; /* of an impact */
 	u64 evaluated_ns; /* when */
 };
 

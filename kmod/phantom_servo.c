@@ -180,7 +180,7 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 	}
 	servo->active = slot;
 	servo->warned = false;
-	phantom_touch_unstick(servo);
+	phantom_touch_settle(servo);
 	next->set_time_ns = pass->now_ns;
 	next->isa = slot->ops->isa;
 	next->set_id = slot->id;

@@ -34,14 +34,19 @@ void phantom_touch_forget(struct phantom_servo *servo)
 		phantom_body_forget(&servo->body[b]);
 }
 
-void phantom_touch_unstick(struct phantom_servo *servo)
+void phantom_touch_settle(struct phantom_servo *servo)
 {
 	const struct phantom_slot *slot = servo->active;
 	u32 f;
 
-	for (f = 0; f < slot->frame_count; f++)
+	for (f = 0; f < slot->frame_count; f++) {
+		struct phantom_touch *touch = &servo->body[slot->body[f]].touch;
+
 		if (!(slot->frame[f].effects & PHANTOM_EFFECT_FRICTION))
-			servo->body[slot->body[f]].touch.stuck = false;
+			touch->stuck = false;
+		if (!(slot->frame[f].effects & PHANTOM_EFFECT_IMPACT))
+			memset(&touch->ring, 0, sizeof(touch->ring));
+	}
 }
 
 /* What is kept too long without an evaluation. */
@@ -123,6 +128,7 @@ static void phantom_touch_give_effects(struct phantom_servo *servo,
 	if (!(frame->effects & ~PHANTOM_EFFECT_DAMPING))
 		return;
 	job->period_ns = pass->period_ns;
+	job->ring = touch->ring;
 	job->stick.coefficient_q24 = touch->coefficient_q24;
 	job->stick.held = touch->stuck &&
 			  phantom_frame_relative(frame, touch->anchor_nm, job->stick.anchor_nm);
@@ -212,6 +218,8 @@ static __always_inline bool phantom_touch_evaluate(struct phantom_servo *servo,
 		touch->proxy_nm[axis] = frame->origin_nm[axis] + job->proxy_nm[axis];
 	if (frame->effects & PHANTOM_EFFECT_FRICTION)
 		phantom_touch_take_stick(servo, frame, touch);
+	if (frame->effects & PHANTOM_EFFECT_IMPACT)
+		touch->ring = job->ring_next;
 	memcpy(touch->normal_q30, job->normal_q30, sizeof(touch->normal_q30));
 	if (job->saturated) {
 		pass->flags |= PHANTOM_TICK_SATURATED;

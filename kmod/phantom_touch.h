@@ -10,8 +10,8 @@
 
 /* The pass's target, contacts, normal and proxy for its tip; target is zero where nothing is promised. */
 void phantom_touch_contact(struct phantom_servo *servo, struct phantom_pass *pass);
-/* The active set is a new one: friction that it does not name holds nothing any more. */
-void phantom_touch_unstick(struct phantom_servo *servo);
+/* The active set is a new one: effects that it does not name remember nothing any more. */
+void phantom_touch_settle(struct phantom_servo *servo);
 /* After contact(): the tip is outside and has used up half of its slack in a frame. */
 bool phantom_touch_running_out(const struct phantom_servo *servo, const struct phantom_pass *pass);
 /* Of all bodies. Run state. */

@@ -482,7 +482,8 @@ struct phantom_height_map {
 
 /*
  * PHANTOM_EFFECT_IMPACT: where contact begins, the surface rings: at an approach speed v with
- * min(gain v, force_un) exp(-t / decay) sin(2 pi frequency t).
+ * min(gain v, force_un) exp(-t / decay) sin(2 pi frequency t), along the normal of that moment. Where
+ * contact ends it fades within 10 ms; only contact that begins after that rings again.
  */
 struct phantom_impact {
 	__u32 gain_mns_m; /* at most PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ frequency_hz */
