@@ -23,18 +23,23 @@ static bool phantom_check_coordinates(const s32 point_nm[3])
 	return true;
 }
 
-bool phantom_check_unit(const s32 vector_q30[3])
+static bool phantom_check_length(const s32 components_q30[], u32 count)
 {
 	u64 sum = 0;
-	int axis;
+	u32 i;
 
-	for (axis = 0; axis < 3; axis++) {
-		s64 component = vector_q30[axis];
+	for (i = 0; i < count; i++) {
+		s64 component = components_q30[i];
 
-		sum += (u64)(component * component); /* <= 2^62 each */
+		sum += (u64)(component * component); /* <= 2^62 each: four wrap at most to 0 */
 	}
 	return sum >= PHANTOM_UNIT_LOW * PHANTOM_UNIT_LOW &&
 	       sum <= PHANTOM_UNIT_HIGH * PHANTOM_UNIT_HIGH;
+}
+
+bool phantom_check_unit(const s32 vector_q30[3])
+{
+	return phantom_check_length(vector_q30, 3);
 }
 
 int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 patches_max)
@@ -125,18 +130,86 @@ static bool phantom_check_material(const struct phantom_material *material)
 	return !material->damping_mns_m || (material->effects & PHANTOM_EFFECT_DAMPING);
 }
 
-/* Version 1 of the ABI: objects stand still where they are. */
-static bool phantom_check_object(const struct phantom_object *object)
+/* In the scene's coordinates: the pose is the identity. */
+static bool phantom_check_resting(const struct phantom_object *object)
 {
 	int i;
 
-	if (object->reserved[0] || object->reserved[1])
-		return false;
 	for (i = 0; i < 3; i++)
 		if (object->translation_nm[i] || object->velocity_nm_s[i] ||
-		    object->angular_velocity_urad_s[i] || object->rotation_q30[i + 1])
+		    object->angular_velocity_urad_s[i] || object->rotation_q30[i + 1] ||
+		    object->origin_nm[i])
 			return false;
 	return object->rotation_q30[0] == PHANTOM_Q30_ONE;
+}
+
+static bool phantom_check_moving(const struct phantom_object *object)
+{
+	u64 turn = 0;
+	int i;
+
+	for (i = 0; i < 3; i++) {
+		s64 about = object->angular_velocity_urad_s[i];
+
+		turn += (u64)(about * about); /* <= 2^62 each */
+		if (object->translation_nm[i] > PHANTOM_POSITION_MAX_NM ||
+		    object->translation_nm[i] < -PHANTOM_POSITION_MAX_NM ||
+		    object->origin_nm[i] > PHANTOM_OBJECT_REACH_NM ||
+		    object->origin_nm[i] < -PHANTOM_OBJECT_REACH_NM)
+			return false;
+	}
+	return turn <= (u64)PHANTOM_OBJECT_TURN_MAX_URAD_S * PHANTOM_OBJECT_TURN_MAX_URAD_S &&
+	       phantom_check_length(object->rotation_q30, 4);
+}
+
+static bool phantom_check_object(const struct phantom_object *object)
+{
+	if ((object->flags & ~PHANTOM_OBJECT_FLAGS_KNOWN) || object->reserved)
+		return false;
+	return object->flags & PHANTOM_OBJECT_MOVES ? phantom_check_moving(object)
+						    : phantom_check_resting(object);
+}
+
+/* Each object on its own, no number twice, and which frame each has: in the objects' order, 0 the scene's. */
+static bool phantom_check_objects(struct phantom_set_copy *copy)
+{
+	u32 i, j;
+
+	copy->frame_count = 1;
+	for (i = 0; i < copy->header.object_count; i++) {
+		const struct phantom_object *object = &copy->objects[i];
+
+		if (!phantom_check_object(object))
+			return false;
+		for (j = 0; j < i; j++)
+			if (copy->objects[j].object == object->object)
+				return false;
+		copy->frame[i] = 0;
+		if (!(object->flags & PHANTOM_OBJECT_MOVES))
+			continue;
+		if (copy->frame_count == PHANTOM_FRAMES)
+			return false;
+		copy->frame[i] = copy->frame_count++;
+	}
+	return true;
+}
+
+/* A face and its neighbours are in one frame. The patch has been checked on its own. */
+static bool phantom_check_frame(const struct phantom_set_copy *copy,
+				const struct phantom_patch *patch)
+{
+	int i;
+
+	for (i = 0; i < 3; i++) {
+		u32 beside = patch->neighbour[i];
+
+		/* the neighbour's own check may come yet */
+		if (beside != PHANTOM_PATCH_NONE &&
+		    (copy->patches[beside].object >= copy->header.object_count ||
+		     copy->frame[copy->patches[beside].object] != copy->frame[patch->object]))
+			return false;
+	}
+	return true;
 }
 
 /* Faces first, then fans, then rims. */
@@ -161,6 +234,8 @@ static bool phantom_check_patches(struct phantom_set_copy *copy)
 			return false;
 		if (i < header->patch_count - rims && patch->kind == PHANTOM_PATCH_RIM)
 			return false;
+		if (copy->frame_count > 1 && !phantom_check_frame(copy, patch))
+			return false;
 	}
 	return true;
 }
@@ -169,21 +244,14 @@ int phantom_set_check_arrays(struct phantom_set_copy *copy)
 {
 	const struct phantom_set *header = &copy->header;
 	u32 effects = 0;
-	u32 i, j;
+	u32 i;
 
 	for (i = 0; i < header->material_count; i++) {
 		if (!phantom_check_material(&copy->materials[i]))
 			return -EINVAL;
 		effects |= copy->materials[i].effects;
 	}
-	if (effects != (header->effects & ~PHANTOM_EFFECTS_SPACE) || phantom_effects_check(copy))
+	if (effects != (header->effects & PHANTOM_EFFECTS_SURFACE) || phantom_effects_check(copy))
 		return -EINVAL;
-	for (i = 0; i < header->object_count; i++) {
-		if (!phantom_check_object(&copy->objects[i]))
-			return -EINVAL;
-		for (j = 0; j < i; j++)
-			if (copy->objects[j].object == copy->objects[i].object)
-				return -EINVAL;
-	}
-	return phantom_check_patches(copy) ? 0 : -EINVAL;
+	return phantom_check_objects(copy) && phantom_check_patches(copy) ? 0 : -EINVAL;
 }

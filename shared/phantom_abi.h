@@ -48,6 +48,8 @@
  *     stiffness          mN/mm (= N/m), __u32
  *     damping            mN*s/m, __u32
  *     velocity           nm/s, __s32 (saturates at +-2.1 m/s in the status page)
+ *     angular velocity   urad/s, __s32
+ *     rotation           Q1.30 quaternion w x y z, of unit length
  *     time               ns, CLOCK_MONOTONIC, __u64; durations in ns, __u32 (saturating)
  *   Conversions saturate, never wrap, and are counted (status->saturated).
  *
@@ -78,6 +80,27 @@
  *   the surface itself moved: so far may a surface rise from one set to the next and still be felt
  *   by a tip that touches it or is below it. One that sinks below the tip lets it go.
  *
+ * MOVING OBJECTS
+ *   An object with PHANTOM_OBJECT_MOVES has a frame of its own: its patches, relative to its origin_nm,
+ *   and its origin_nm are in that frame. translation_nm and rotation_q30 say where the frame was in
+ *   the scene at set.time_ns: a point x of it at translation + rotation x. From then on the tick lets
+ *   the frame's origin go straight on by velocity_nm_s and turns the frame round it by
+ *   angular_velocity_urad_s, both in the scene's axes, until the next set, for PHANTOM_MOTION_MAX_NS at
+ *   most. So the frame of a turntable best has its origin on the axis: what goes round in a circle
+ *   leaves a straight line by r w^2 dt^2 / 2. Where the next set says otherwise, the frame goes over
+ *   to the new pose in the time between the two, PHANTOM_FADE_NS at most, and no force steps. A pose
+ *   that would move the surface by more than PHANTOM_MOTION_JUMP_NM at the tip, or turn it by more
+ *   than 0.2 rad, is a jump: what touched the object is forgotten and the force fades.
+ *   Contact, proxy, friction and texture belong to the frame and move with it; damping and friction
+ *   know the velocity against the surface. A tip that rests is found by a surface that comes over it.
+ *   Contacts with several frames, and the scene that rests, add up; proxy and normal of status and
+ *   records are those of the frame that pushes most, in the scene.
+ *   COVERAGE goes along: radius_nm round the centre where it was in the frame at set.time_ns. A tip
+ *   that leaves it, because either moves, is uncovered. Only objects in the set can get so: name each
+ *   that may come near before the next set, with or without patches. A tip more than 4 m from a
+ *   frame's origin along an axis is not covered.
+ *   An object that gains or loses the flag is another object: the force fades over to it.
+ *
  * EFFECTS
  *   What a surface feels like beyond contact, and what acts in free space. A material names the
  *   effects of its surface (PHANTOM_EFFECTS_SURFACE), a set itself those of space
@@ -85,13 +108,21 @@
  *   has its parameter in the material. Every other effect has a table, which is there only if the
  *   effect is named. Tables follow the materials in memory, in the order of the effects' bits,
  *   without gaps, set.effect_bytes in all:
- *     surface         its struct once for each material that names it, in the materials' order
- *     CONSTANT        its struct
+ *     surface         its struct once for each material that names it, in the materials' order;
+ *                     each phantom_height_map is followed by its samples
+ *     CONSTANT, TIP   its struct
  *     VISCOSITY, GUIDE  struct phantom_effect_count, then its struct that many times
+ *     FIELD           its struct, then its nodes
  *   Law, source, energy and limits of each stand in kmod/float/effects/. Surface effects act where
  *   there is contact, those of space wherever the set covers the tip, which takes no patches. All of
  *   them fade as contact does; and where a set's effects or tables are not those of the set before
  *   it, the force goes over to the new ones within PHANTOM_FADE_NS.
+ *   TIP makes a ball of the tip, for contact only: tip_nm is its centre. Every material's contact
+ *   radius R counts as R + radius_nm, here and wherever this header says R, but for magnet.range_nm's
+ *   limit. So the force is k (R + radius - d) at a distance d of the centre: what a point feels at d
+ *   the ball feels when its surface is there, as stiff. Coverage must reach that much farther; the
+ *   tip counts as inside when the ball's centre is. Two places of a hollow that is narrower than the
+ *   ball are contacts of their own, added as the model adds them.
  *
  * POLL
  *   POLLIN    a record can be read, or the end of a run has not yet been read.
@@ -137,16 +168,21 @@
  *                          effect in a material, damping without its effect, effect_bytes that
  *                          is not the length of the tables the effects call for, a parameter
  *                          beyond what its struct says,
- *                          a normal that is not of unit length to 2^-10, a pose that is not the
- *                          identity (v1), a face after a fan patch, a face or fan after a
- *                          rim, a fan or rim whose corners do not coincide as its kind says, or
- *                          that has a face number or neighbours, a rim of surface 0, a
- *                          neighbour that is no face, an object number twice,
+ *                          a normal or rotation that is not of unit length to 2^-10, an object
+ *                          that rests with a pose that is not the identity, a velocity or an origin,
+ *                          more than PHANTOM_MOVING_MAX that move, one that turns faster than
+ *                          PHANTOM_OBJECT_TURN_MAX_URAD_S, its origin beyond +-PHANTOM_OBJECT_REACH_NM or
+ *                          its translation beyond PHANTOM_POSITION_MAX_NM, a face after a fan patch,
+ *                          a face or fan after a rim, a fan or rim whose corners do not coincide as
+ *                          its kind says, or that has a face number or neighbours, a rim of surface
+ *                          0, a
+ *                          neighbour that is no face or in another frame, an object number twice,
  *                          reserved not zero, radius 0 in a material, vertices or centre
  *                          beyond +-1 m of the origin, the origin beyond
  *                          PHANTOM_POSITION_MAX_NM
- *                 ENOMEM   no memory (the first sets after open, after a change of arithmetic or
- *                          with longer tables only; slots are reused). The set in use stays
+ *                 ENOMEM   no memory (the first sets after open, after a change of arithmetic, with
+ *                          longer tables or more moving objects only; memory is reused). The set in
+ *                          use stays
  *                 EAGAIN   every slot is in use: try again next tick
  *   SIM_MOVE      EOPNOTSUPP  the device is not simulated
  *                 EINVAL   beyond PHANTOM_POSITION_MAX_NM, reserved not zero
@@ -181,6 +217,7 @@
 #define PHANTOM_PATCHES_MAX 512 /* patches in a set */
 #define PHANTOM_MATERIALS_MAX 16 /* materials in a set */
 #define PHANTOM_OBJECTS_MAX 16 /* objects in a set */
+#define PHANTOM_MOVING_MAX 3 /* of them with PHANTOM_OBJECT_MOVES */
 #define PHANTOM_RATE_MIN_HZ 1000
 #define PHANTOM_RATE_MAX_HZ 10000
 #define PHANTOM_NEWTON_STEPS_MAX 3
@@ -190,6 +227,11 @@
 #define PHANTOM_FADE_NS 20000000 /* force fades to zero, or to another set, in 20 ms */
 #define PHANTOM_MEMORY_NS 100000000 /* an uncovered tip keeps `inside` and proxy this long */
 #define PHANTOM_REMIND_NS 4000000 /* while a set is needed, POLLPRI comes again this often */
+#define PHANTOM_MOTION_MAX_NS 1000000000 /* a moving object stops that long after set.time_ns */
+#define PHANTOM_MOTION_JUMP_NM 10000000 /* a pose farther off than 10 mm at the tip is a jump */
+#define PHANTOM_OBJECT_REACH_NM                                                                    \
+	2000000000 /* origin_nm of a moving object, in its frame, per axis */
+#define PHANTOM_OBJECT_TURN_MAX_URAD_S 100000000 /* 100 rad/s, all axes together */
 
 /* ---- unit vectors -------------------------------------------------------- */
 #define PHANTOM_Q30_ONE (1 << 30)
@@ -202,7 +244,7 @@
 #define PHANTOM_FEATURE_ARITH_FLOAT (1ULL << 4)
 #define PHANTOM_FEATURE_ARITH_FIXED (1ULL << 5)
 #define PHANTOM_FEATURE_ARITH_DOUBLE (1ULL << 6) /* user mode only */
-#define PHANTOM_FEATURE_MOVING_OBJECTS (1ULL << 7)
+#define PHANTOM_FEATURE_MOVING_OBJECTS (1ULL << 7) /* PHANTOM_OBJECT_MOVES */
 #define PHANTOM_FEATURE_SIM_MOVE (1ULL << 8)
 #define PHANTOM_FEATURE_FANS (1ULL << 9) /* patches of kind EDGE and CORNER */
 #define PHANTOM_FEATURE_CROSSFADE (1ULL << 10) /* start.crossfade_ms; without it that must be 0 */
@@ -214,17 +256,22 @@
 #define PHANTOM_EFFECT_MAGNET (1U << 1) /* struct phantom_magnet */
 #define PHANTOM_EFFECT_FRICTION (1U << 2) /* struct phantom_friction */
 #define PHANTOM_EFFECT_TEXTURE (1U << 3) /* struct phantom_texture */
+#define PHANTOM_EFFECT_HEIGHT_MAP (1U << 4) /* struct phantom_height_map */
+#define PHANTOM_EFFECT_IMPACT (1U << 5) /* struct phantom_impact */
 #define PHANTOM_EFFECT_CONSTANT (1U << 16) /* struct phantom_constant */
 #define PHANTOM_EFFECT_VISCOSITY (1U << 17) /* struct phantom_viscosity */
 #define PHANTOM_EFFECT_GUIDE (1U << 18) /* struct phantom_guide */
+#define PHANTOM_EFFECT_FIELD (1U << 19) /* struct phantom_field */
+#define PHANTOM_EFFECT_TIP (1U << 24) /* struct phantom_tip; of the set, and nowhere a force */
 #define PHANTOM_EFFECTS_SURFACE                                                                    \
 	(PHANTOM_EFFECT_DAMPING | PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION |                \
-	 PHANTOM_EFFECT_TEXTURE)
+	 PHANTOM_EFFECT_TEXTURE | PHANTOM_EFFECT_HEIGHT_MAP | PHANTOM_EFFECT_IMPACT)
 #define PHANTOM_EFFECTS_SPACE                                                                      \
-	(PHANTOM_EFFECT_CONSTANT | PHANTOM_EFFECT_VISCOSITY | PHANTOM_EFFECT_GUIDE)
-#define PHANTOM_EFFECTS_KNOWN (PHANTOM_EFFECTS_SURFACE | PHANTOM_EFFECTS_SPACE)
+	(PHANTOM_EFFECT_CONSTANT | PHANTOM_EFFECT_VISCOSITY | PHANTOM_EFFECT_GUIDE |               \
+	 PHANTOM_EFFECT_FIELD)
+#define PHANTOM_EFFECTS_KNOWN (PHANTOM_EFFECTS_SURFACE | PHANTOM_EFFECTS_SPACE | PHANTOM_EFFECT_TIP)
 
-#define PHANTOM_EFFECT_BYTES_MAX 4096 /* of a set's tables */
+#define PHANTOM_EFFECT_BYTES_MAX 131072 /* of a set's tables */
 #define PHANTOM_REGIONS_MAX 8 /* in each of the tables VISCOSITY and GUIDE */
 #define PHANTOM_EFFECT_FORCE_MAX_UN 100000000 /* 100 N */
 #define PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM 100000 /* 100 N/mm */
@@ -236,6 +283,17 @@
 #define PHANTOM_VISCOSITY_MAX_MNS_M 20000 /* 20 N s/m: stable at 1 kHz from 20 g on */
 #define PHANTOM_DRAG_MAX_MNS2_M2 1000000
 #define PHANTOM_BORDER_MIN_NM 100000 /* 0.1 mm */
+#define PHANTOM_MAP_SIZE_MIN 4 /* samples of a height map, each way */
+#define PHANTOM_MAP_SIZE_MAX 64
+#define PHANTOM_MAP_SPACING_MIN_NM 10000 /* 10 um from sample to sample */
+#define PHANTOM_IMPACT_FREQUENCY_MIN_HZ 10
+#define PHANTOM_IMPACT_FREQUENCY_MAX_HZ 1000
+#define PHANTOM_IMPACT_DECAY_MIN_US 1000
+#define PHANTOM_IMPACT_DECAY_MAX_US 500000
+#define PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ 125 /* a / (2 pi f) at most 20 g */
+#define PHANTOM_FIELD_NODES_MAX 4096
+#define PHANTOM_FIELD_SPACING_MIN_NM 100000 /* 0.1 mm from node to node */
+#define PHANTOM_TIP_RADIUS_MAX_NM 50000000 /* 50 mm */
 
 /* ---- model (CONTACT: contact, combination, proxy, arithmetic) ------------ */
 #define PHANTOM_MODEL_OFF 0 /* the tick runs, the force is zero */
@@ -360,7 +418,7 @@ struct phantom_start {
  */
 #define PHANTOM_PATCH_RIM 3
 struct phantom_patch {
-	__s32 vertex_nm[3][3]; /* [corner][axis], relative to the set's origin */
+	__s32 vertex_nm[3][3]; /* [corner][axis], relative to the origin of set or object */
 	__s32 normal_q30[3][3]; /* [corner][axis], unit */
 	__u32 vertex[3]; /* vertex numbers, unique in the scene: equal = the same corner */
 	__u32 face; /* face number, unique in the scene and the same in every set of a level */
@@ -398,13 +456,40 @@ struct phantom_friction {
 };
 
 /*
- * PHANTOM_EFFECT_TEXTURE: two gratings, added. A grating is a wave in the scene's space, felt where the
- * surface cuts it: amplitude_nm sin(2 pi wave . position). Each amplitude_nm times the sum of its
- * |wave_per_km|, both added up, is at most PHANTOM_WAVE_SLOPE_MAX.
+ * PHANTOM_EFFECT_TEXTURE: two gratings, added. A grating is a wave in the scene's space, or in that of
+ * the moving object, felt where the surface cuts it: amplitude_nm sin(2 pi wave . position). Each
+ * amplitude_nm times the sum of its |wave_per_km|, both added up, is at most PHANTOM_WAVE_SLOPE_MAX.
  */
 struct phantom_texture {
 	__u32 amplitude_nm[2]; /* 0 = no such grating; its wave is then zero */
 	__s32 wave_per_km[2][3]; /* crests per km along the axes: 1e6 = 1 mm apart */
+};
+
+/*
+ * PHANTOM_EFFECT_HEIGHT_MAP: a tile of heights, repeated in the scene's space without end. It is laid on
+ * surfaces along each of the axes, more of it the more the surface faces that way (triplanar): columns
+ * run along y, x, x and rows along z, z, y where the surface faces x, y, z; sample 0 0 is at 0. Between
+ * samples it is a quadratic spline, which smooths them: h is near a sample, not through it. Behind the
+ * struct follow the heights, __s32 height_nm[rows][columns]. The largest step from one to the next along
+ * rows and that along columns (round the tile) add up to spacing_nm at most: a slope of 1.
+ */
+struct phantom_height_map {
+	__u32 columns; /* PHANTOM_MAP_SIZE_MIN ... _MAX, a power of two */
+	__u32 rows; /* the same */
+	__u32 spacing_nm; /* from sample to sample; PHANTOM_MAP_SPACING_MIN_NM at least */
+	__u32 amplitude_nm; /* no height is farther from 0 */
+};
+
+/*
+ * PHANTOM_EFFECT_IMPACT: where contact begins, the surface rings: at an approach speed v with
+ * min(gain v, force_un) exp(-t / decay) sin(2 pi frequency t), along the normal of that moment. Where
+ * contact ends it fades within 10 ms; only contact that begins after that rings again.
+ */
+struct phantom_impact {
+	__u32 gain_mns_m; /* at most PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ frequency_hz */
+	__u32 force_un; /* the largest amplitude, at most PHANTOM_EFFECT_FORCE_MAX_UN */
+	__u32 frequency_hz; /* PHANTOM_IMPACT_FREQUENCY_MIN_HZ ... _MAX_HZ */
+	__u32 decay_us; /* PHANTOM_IMPACT_DECAY_MIN_US ... _MAX_US */
 };
 
 /* Tables of space effects. Places are absolute, and near the set's origin: _REACH_MAX_NM. */
@@ -442,15 +527,43 @@ struct phantom_guide {
 	__u32 reserved;
 };
 
-/* Where an object is. v1: rotation (1,0,0,0), all else zero but number and revision. */
+/*
+ * PHANTOM_EFFECT_FIELD: forces at the nodes of a grid along the scene's axes, between them trilinear,
+ * outside of it none; at its border it fades. Behind the struct follow the nodes,
+ * __s32 force_un[nodes[2]][nodes[1]][nodes[0]][3], and one zero __s32 if their number is odd. Along every
+ * axis force changes by PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM at most, and is PHANTOM_EFFECT_FORCE_MAX_UN at
+ * most.
+ */
+struct phantom_field {
+	__s64 corner_nm[3]; /* node 0 0 0 */
+	__u32 spacing_nm[3]; /* from node to node; PHANTOM_FIELD_SPACING_MIN_NM at least */
+	__u32 nodes[3]; /* 2 or more; their product is PHANTOM_FIELD_NODES_MAX at most */
+	__u32 border_nm; /* full farther inside; PHANTOM_BORDER_MIN_NM ... half of the shortest side */
+	__u32 reserved;
+};
+
+/* PHANTOM_EFFECT_TIP: EFFECTS above. */
+struct phantom_tip {
+	__u32 radius_nm; /* 1 ... PHANTOM_TIP_RADIUS_MAX_NM; with it no R is above 2^32 - 1 nm */
+	__u32 reserved;
+};
+
+/*
+ * Where an object is. One that rests has its patches in the scene, relative to the set's origin: rotation
+ * (1,0,0,0), all else zero but number and revision.
+ */
+#define PHANTOM_OBJECT_MOVES (1U << 0) /* MOVING OBJECTS above */
+#define PHANTOM_OBJECT_FLAGS_KNOWN PHANTOM_OBJECT_MOVES
 struct phantom_object {
 	__u32 object; /* number in the scene */
 	__u32 revision; /* of its geometry; another number crossfades */
-	__s64 translation_nm[3];
-	__s32 rotation_q30[4]; /* unit quaternion w x y z */
-	__s32 velocity_nm_s[3];
-	__s32 angular_velocity_urad_s[3];
-	__u32 reserved[2];
+	__s64 translation_nm[3]; /* of the frame's origin, in the scene, at set.time_ns */
+	__s32 rotation_q30[4]; /* unit quaternion w x y z, from the frame to the scene */
+	__s32 velocity_nm_s[3]; /* of the frame's origin */
+	__s32 angular_velocity_urad_s[3]; /* round the frame's origin, about the scene's axes */
+	__u32 flags; /* PHANTOM_OBJECT_... */
+	__u32 reserved;
+	__s64 origin_nm[3]; /* of the patches' coordinates, in the frame */
 };
 
 /* SUBMIT_SET. */
@@ -467,6 +580,7 @@ struct phantom_set {
 	__u32 level_error_nm; /* how far that level lies from the mesh */
 	__u32 flags; /* 0 */
 	__u32 effect_bytes; /* of the effects' tables, behind the materials */
+	__u64 time_ns; /* of the poses and of the coverage, CLOCK_MONOTONIC; read if an object moves */
 	__u64 patches; /* struct phantom_patch[patch_count] */
 	__u64 materials; /* struct phantom_material[material_count], then the tables */
 	__u64 objects; /* struct phantom_object[object_count] */

@@ -33,17 +33,21 @@ struct phantom_float_set;
 #define PHANTOM_FLOAT_TICK_MAX PHANTOM_PATCHES_MAX
 
 /*
- * A validated set's effect tables, as they lie in the submitter's copy; a table is NULL unless the
- * mask names its effect. Surface effects: an entry for each material that names them.
+ * A validated set's effect tables, as they lie in memory; a table is NULL unless the mask names its
+ * effect. Surface effects: an entry for each material that names them; height maps by material, NULL where
+ * it does not name one. Height maps and field are read by the tick too, as long as the set is in use.
  */
 struct phantom_effects {
 	u32 mask; /* set.effects */
 	const struct phantom_magnet *magnet;
 	const struct phantom_friction *friction;
 	const struct phantom_texture *texture;
+	const struct phantom_height_map *height_map[PHANTOM_MATERIALS_MAX];
+	const struct phantom_impact *impact;
 	const struct phantom_constant *constant;
 	const struct phantom_viscosity *viscosity;
 	const struct phantom_guide *guide;
+	const struct phantom_field *field;
 	u32 viscosity_count;
 	u32 guide_count;
 };
@@ -71,6 +75,20 @@ struct phantom_stick {
 	s32 anchor_nm[3]; /* the stick point */
 };
 
+/* What an impact leaves behind: effects/impact.h. All zero: nothing rings, the next contact may. */
+struct phantom_ring {
+	u64 age_ns;
+	u32 wait_ns; /* without contact, until the next may ring */
+	u32 gate_ns; /* g; 0: nothing rings, and what follows means nothing */
+	s32 normal_q30[3];
+	u32 frequency_hz;
+	u32 decay_us;
+	s32 amplitude_un;
+	s32 energy_nj; /* E_0 */
+	s32 left_nj; /* E */
+	s32 force_un; /* of the tick before, along the normal */
+};
+
 /*
  * One tick. Positions are nm relative to the origin of `set`; the servo rebases the state when
  * the set changes. All of it is plain integers, so that kernel and user mode can compare it.
@@ -94,6 +112,7 @@ struct phantom_float_job {
 	/* effects only: in, and what it is after this tick; a tick may be tried more than once */
 	u32 period_ns;
 	struct phantom_stick stick, stick_next;
+	struct phantom_ring ring, ring_next;
 	/* out */
 	s32 force_un[3];
 	s32 normal_q30[3]; /* of the contact; 0 0 0 without one */

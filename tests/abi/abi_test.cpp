@@ -83,13 +83,18 @@ TEST(Abi, StructuresHaveNoHolesAndNoTail)
 {
     // sizes of the fields add up to the size of the structure
     EXPECT_EQ(sizeof(phantom_patch), 3 * 12 + 3 * 12 + 3 * 4 + 4 + 3 * 4 + 4 + 4 + 4 + 2 * 4);
-    EXPECT_EQ(sizeof(phantom_set), 8 + 3 * 8 + 3 * 4 + 4 + 8 * 4 + 3 * 8);
+    EXPECT_EQ(sizeof(phantom_set), 8 + 3 * 8 + 3 * 4 + 4 + 8 * 4 + 8 + 3 * 8);
+    EXPECT_EQ(sizeof(phantom_object), 2 * 4 + 3 * 8 + (4 + 3 + 3) * 4 + 2 * 4 + 3 * 8);
     EXPECT_EQ(sizeof(phantom_magnet), 2 * 4);
     EXPECT_EQ(sizeof(phantom_friction), 4 * 4);
     EXPECT_EQ(sizeof(phantom_texture), 2 * 4 + 2 * 3 * 4);
+    EXPECT_EQ(sizeof(phantom_height_map), 4 * 4);
+    EXPECT_EQ(sizeof(phantom_impact), 4 * 4);
     EXPECT_EQ(sizeof(phantom_constant), 3 * 4 + 4);
     EXPECT_EQ(sizeof(phantom_viscosity), 3 * 8 + 4 * 4);
     EXPECT_EQ(sizeof(phantom_guide), 3 * 8 + 3 * 4 + 5 * 4);
+    EXPECT_EQ(sizeof(phantom_field), 3 * 8 + 3 * 4 + 3 * 4 + 2 * 4);
+    EXPECT_EQ(sizeof(phantom_tip), 2 * 4);
     EXPECT_EQ(sizeof(phantom_tick), 3 * 8 + 2 * 24 + 12 + 7 * 4);
     EXPECT_EQ(offsetof(phantom_status, latency) + 3 * sizeof(phantom_histogram), sizeof(phantom_status));
 }

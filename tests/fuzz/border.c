@@ -19,6 +19,16 @@ static int border_copy(struct phantom_set_copy* copy)
     return 0;
 }
 
+/* The tables of the set that was accepted last are kept: float sets refer to them. */
+static u64* border_tables(bool accepted)
+{
+    static u64 tables[2][PHANTOM_EFFECT_BYTES_MAX / sizeof(u64)];
+    static unsigned int next;
+
+    next ^= accepted;
+    return tables[next];
+}
+
 int border_check(const struct phantom_set* set, uint64_t last_id, struct border_set* out)
 {
     static struct phantom_set_copy copy;
@@ -27,6 +37,7 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
 
     memset(&copy, 0, sizeof(copy));
     copy.header = *set;
+    copy.tables = border_tables(false);
     error = phantom_set_check_header(&copy.header, last_id, PHANTOM_PATCHES_MAX);
     if (!error)
         error = border_copy(&copy);
@@ -34,11 +45,13 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
         error = phantom_set_check_arrays(&copy);
     if (error)
         return error;
+    border_tables(true);
     memcpy(out->origin_nm, set->origin_nm, sizeof(out->origin_nm));
     memcpy(out->centre_nm, set->centre_nm, sizeof(out->centre_nm));
     out->radius_nm = min_t(u32, set->radius_nm, PHANTOM_COVERAGE_MAX_NM);
     out->face_count = copy.face_count;
     out->rim_count = copy.rim_count;
+    out->materials = copy.materials;
     out->effects = set->effect_bytes ? &copy.effects : NULL;
     out->reach_nm = 0;
     for (i = 0; i < set->material_count; i++)
@@ -46,27 +59,27 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
     return 0;
 }
 
-static void border_slot(const struct border_set* set, struct phantom_slot* slot)
+static void border_frame(const struct border_set* set, struct phantom_frame* frame)
 {
-    memcpy(slot->origin_nm, set->origin_nm, sizeof(slot->origin_nm));
-    memcpy(slot->centre_nm, set->centre_nm, sizeof(slot->centre_nm));
-    slot->radius_nm = set->radius_nm;
+    memcpy(frame->origin_nm, set->origin_nm, sizeof(frame->origin_nm));
+    memcpy(frame->centre_nm, set->centre_nm, sizeof(frame->centre_nm));
+    frame->radius_nm = set->radius_nm;
 }
 
 bool border_relative(const struct border_set* set, const int64_t position_nm[3], int32_t relative_nm[3])
 {
-    struct phantom_slot slot;
+    struct phantom_frame frame;
     s64 position[3];
 
-    border_slot(set, &slot);
+    border_frame(set, &frame);
     memcpy(position, position_nm, sizeof(position));
-    return phantom_set_relative(&slot, position, relative_nm);
+    return phantom_frame_relative(&frame, position, relative_nm);
 }
 
 bool border_covers(const struct border_set* set, const int32_t point_nm[3], uint32_t ball_nm)
 {
-    struct phantom_slot slot;
+    struct phantom_frame frame;
 
-    border_slot(set, &slot);
-    return phantom_set_covers(&slot, point_nm, ball_nm);
+    border_frame(set, &frame);
+    return phantom_frame_covers(&frame, point_nm, ball_nm);
 }

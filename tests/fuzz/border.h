@@ -23,7 +23,9 @@ struct border_set {
     uint32_t reach_nm;
     uint32_t face_count;
     uint32_t rim_count;
-    const struct phantom_effects* effects; /* until the next check; NULL: no tables */
+    const struct phantom_material* materials; /* as contact has them, until the next check */
+    /* NULL: no tables. Until the next check; its tables until the second set that is accepted after it */
+    const struct phantom_effects* effects;
 };
 
 /* 0, or the negative errno with which SUBMIT_SET refuses it after a set with that id. */

@@ -25,14 +25,30 @@ inline Place minus(const Place& a, const Place& b)
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
+/// A height map and its samples, row by row.
+struct HeightMap {
+    phantom_height_map header{};
+    std::vector<std::int32_t> height_nm{};
+};
+
+/// A force field and the forces at its nodes, x first.
+struct Field {
+    phantom_field header{};
+    std::vector<std::array<std::int32_t, 3>> force_un{};
+};
+
 /// Parameters by effect; what is not there is not named. Surface effects go to the plane's first material.
 struct Feel {
     std::optional<phantom_magnet> magnet{};
     std::optional<phantom_friction> friction{};
     std::optional<phantom_texture> texture{};
+    std::optional<HeightMap> height_map{};
+    std::optional<phantom_impact> impact{};
     std::optional<phantom_constant> constant{};
     std::vector<phantom_viscosity> viscosity{};
     std::vector<phantom_guide> guides{};
+    std::optional<Field> field{};
+    std::optional<phantom_tip> tip{};
 };
 
 template <class T>
@@ -59,12 +75,23 @@ inline void add_effects(Plane& plane, const Feel& feel)
     add(PHANTOM_EFFECT_MAGNET, feel.magnet);
     add(PHANTOM_EFFECT_FRICTION, feel.friction);
     add(PHANTOM_EFFECT_TEXTURE, feel.texture);
+    if (feel.height_map) {
+        add(PHANTOM_EFFECT_HEIGHT_MAP, std::optional(feel.height_map->header));
+        plane.add_integers(feel.height_map->height_nm.data(), feel.height_map->height_nm.size());
+    }
+    add(PHANTOM_EFFECT_IMPACT, feel.impact);
     if (named)
         plane.materials[0].effects |= named;
     add(PHANTOM_EFFECT_CONSTANT, feel.constant);
-    plane.header.effects |= named;
     add_regions(plane, PHANTOM_EFFECT_VISCOSITY, feel.viscosity);
     add_regions(plane, PHANTOM_EFFECT_GUIDE, feel.guides);
+    if (feel.field) {
+        add(PHANTOM_EFFECT_FIELD, std::optional(feel.field->header));
+        if (!feel.field->force_un.empty())
+            plane.add_integers(feel.field->force_un[0].data(), 3 * feel.field->force_un.size());
+    }
+    add(PHANTOM_EFFECT_TIP, feel.tip);
+    plane.header.effects |= named;
 }
 
 inline phantom_friction friction(double statical, double dynamic, double stiffness_n_mm,

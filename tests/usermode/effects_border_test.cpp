@@ -16,10 +16,15 @@ Feel good()
     return {.magnet = phantom_magnet{500'000, 300'000},
             .friction = friction(0.6, 0.4, 2, 10),
             .texture = phantom_texture{{50'000, 20'000}, {{1'000'000, 0, 0}, {0, 900'000, 0}}},
+            .height_map = HeightMap{{8, 4, 200'000, 50'000}, std::vector<std::int32_t>(32, 50'000)},
+            .impact = phantom_impact{5000, 2'000'000, 200, 20'000},
             .constant = phantom_constant{{1, 2, 3}, 0},
             .viscosity = {{{5'000'000, 0, 0}, 30'000'000, 5'000'000, 2000, 300}, {{0, 0, 0}, 0, 0, 500, 0}},
             .guides = {{{0, 0, 0}, {0, 0, 0}, PHANTOM_GUIDE_POINT, 50, 200'000, 0, 0},
-                       {{0, 0, 0}, {PHANTOM_Q30_ONE, 0, 0}, PHANTOM_GUIDE_LINE, 50, 200'000, 0, 0}}};
+                       {{0, 0, 0}, {PHANTOM_Q30_ONE, 0, 0}, PHANTOM_GUIDE_LINE, 50, 200'000, 0, 0}},
+            .field = Field{{{-9'000'000, 0, 5}, {1'000'000, 2'000'000, 3'000'000}, {5, 3, 3}, 2'000'000, 0},
+                           std::vector<std::array<std::int32_t, 3>>(45, {1, 2, 3})},
+            .tip = phantom_tip{500'000, 0}};
 }
 
 struct BadFeel {
@@ -46,6 +51,113 @@ const BadFeel bad_feels[] = {
     {"relief too steep", [](Feel& f) { f.texture->amplitude_nm[0] = 200'000; }},
     {"amplitude without a wave", [](Feel& f) { f.texture->wave_per_km[0][0] = 0; }},
     {"wave without an amplitude", [](Feel& f) { f.texture->amplitude_nm[1] = 0; }},
+    {"map of three columns",
+     [](Feel& f) {
+         f.height_map->header.columns = 3;
+         f.height_map->height_nm.resize(12);
+     }},
+    {"map of six rows",
+     [](Feel& f) {
+         f.height_map->header.rows = 6;
+         f.height_map->height_nm.resize(48);
+     }},
+    {"map of 128 columns",
+     [](Feel& f) {
+         f.height_map->header.columns = 128;
+         f.height_map->height_nm.resize(512);
+     }},
+    {"map without columns", [](Feel& f) { f.height_map->header.columns = 0; }},
+    {"map too large for a number", [](Feel& f) { f.height_map->header.rows = 0x80000000; }},
+    {"map too fine",
+     [](Feel& f) {
+         f.height_map->header.spacing_nm = PHANTOM_MAP_SPACING_MIN_NM - 1;
+         f.height_map->height_nm.assign(32, 0);
+     }},
+    {"height above the amplitude", [](Feel& f) { f.height_map->height_nm[31] = 50'001; }},
+    {"height below the amplitude",
+     [](Feel& f) {
+         f.height_map->header.spacing_nm = 1'000'000'000;
+         f.height_map->height_nm[0] = -50'001;
+     }},
+    {"height as low as can be", [](Feel& f) { f.height_map->height_nm[5] = INT32_MIN; }},
+    {"map too steep along and across",
+     [](Feel& f) {
+         f.height_map->header.spacing_nm = 199'999;
+         f.height_map->height_nm[9] = -50'000;
+     }},
+    {"map too steep round the tile",
+     [](Feel& f) {
+         f.height_map->header.amplitude_nm = 210'000;
+         for (std::size_t i = 0; i < 32; ++i)
+             f.height_map->height_nm[i] = std::int32_t(i % 8 * 30'000);
+     }},
+    {"map longer than it says", [](Feel& f) { f.height_map->height_nm.resize(34); }},
+    {"map shorter than it says", [](Feel& f) { f.height_map->height_nm.resize(30); }},
+    {"ringing too high", [](Feel& f) { f.impact->frequency_hz = PHANTOM_IMPACT_FREQUENCY_MAX_HZ + 1; }},
+    {"ringing too low",
+     [](Feel& f) {
+         f.impact->frequency_hz = PHANTOM_IMPACT_FREQUENCY_MIN_HZ - 1;
+         f.impact->gain_mns_m = 0;
+     }},
+    {"ringing too much",
+     [](Feel& f) { f.impact->gain_mns_m = 200 * PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ + 1; }},
+    {"ringing too short", [](Feel& f) { f.impact->decay_us = PHANTOM_IMPACT_DECAY_MIN_US - 1; }},
+    {"ringing too long", [](Feel& f) { f.impact->decay_us = PHANTOM_IMPACT_DECAY_MAX_US + 1; }},
+    {"ringing too hard", [](Feel& f) { f.impact->force_un = PHANTOM_EFFECT_FORCE_MAX_UN + 1; }},
+    {"field of one layer",
+     [](Feel& f) {
+         f.field->header.nodes[2] = 1;
+         f.field->force_un.resize(15);
+     }},
+    {"field without nodes", [](Feel& f) { f.field->header.nodes[0] = 0; }},
+    {"field of 2^32 nodes", [](Feel& f) { f.field->header.nodes[0] = f.field->header.nodes[1] = 0x10000; }},
+    {"field of too many nodes",
+     [](Feel& f) {
+         std::copy_n(std::array{17u, 241u, 2u}.data(), 3, f.field->header.nodes);
+         f.field->force_un.assign(17 * 241 * 2, {0, 0, 0});
+     }},
+    {"field too fine",
+     [](Feel& f) {
+         f.field->header.spacing_nm[1] = PHANTOM_FIELD_SPACING_MIN_NM - 1;
+         f.field->header.border_nm = PHANTOM_BORDER_MIN_NM;
+     }},
+    {"field too wide", [](Feel& f) { f.field->header.spacing_nm[0] = 1'000'000'001; }},
+    {"field without a border", [](Feel& f) { f.field->header.border_nm = PHANTOM_BORDER_MIN_NM - 1; }},
+    {"field that is border only", [](Feel& f) { f.field->header.border_nm = 2'000'001; }},
+    {"field reserved", [](Feel& f) { f.field->header.reserved = 1; }},
+    {"field too far", [](Feel& f) { f.field->header.corner_nm[1] = PHANTOM_EFFECT_REACH_MAX_NM + 1; }},
+    {"field at the end of s64", [](Feel& f) { f.field->header.corner_nm[2] = INT64_MIN; }},
+    {"field too strong",
+     [](Feel& f) {
+         f.field->force_un.assign(45, {0, 0, PHANTOM_EFFECT_FORCE_MAX_UN + 1});
+     }},
+    {"field too strong, negative",
+     [](Feel& f) {
+         f.field->force_un.assign(45, {INT32_MIN, 0, 0});
+     }},
+    {"field too stiff along x",
+     [](Feel& f) {
+         std::copy_n(std::array{100'000u, 400'000u, 400'000u}.data(), 3, f.field->header.spacing_nm);
+         f.field->header.border_nm = 200'000;
+         f.field->force_un[12][1] = 10'000'003;
+     }},
+    {"field too stiff along y",
+     [](Feel& f) {
+         std::copy_n(std::array{400'000u, 100'000u, 400'000u}.data(), 3, f.field->header.spacing_nm);
+         f.field->header.border_nm = 100'000;
+         f.field->force_un[12][1] = -10'000'000 + 1;
+     }},
+    {"field too stiff along z",
+     [](Feel& f) {
+         std::copy_n(std::array{400'000u, 400'000u, 100'000u}.data(), 3, f.field->header.spacing_nm);
+         f.field->header.border_nm = 100'000;
+         f.field->force_un[12][1] = 10'000'003;
+     }},
+    {"field longer than it says", [](Feel& f) { f.field->force_un.resize(47); }},
+    {"field shorter than it says", [](Feel& f) { f.field->force_un.resize(43); }},
+    {"tip without a radius", [](Feel& f) { f.tip->radius_nm = 0; }},
+    {"tip too large", [](Feel& f) { f.tip->radius_nm = PHANTOM_TIP_RADIUS_MAX_NM + 1; }},
+    {"tip reserved", [](Feel& f) { f.tip->reserved = 1; }},
     {"constant too large", [](Feel& f) { f.constant->force_un[1] = PHANTOM_EFFECT_FORCE_MAX_UN + 1; }},
     {"constant too large, negative", [](Feel& f) { f.constant->force_un[2] = INT32_MIN; }},
     {"constant reserved", [](Feel& f) { f.constant->reserved = 1; }},
@@ -121,7 +233,22 @@ TEST_F(EffectBorder, TheLimitsThemselvesAreNot)
                                              PHANTOM_EFFECT_FORCE_MAX_UN,
                                              0xffffffff,
                                              0});
+    feel.height_map = HeightMap{{64, 64, 100'000, 50'000}, std::vector<std::int32_t>(64 * 64, 0)};
+    for (std::size_t i = 0; i < 64 * 64; ++i) // a chessboard along x: 100 um up and down, none along y
+        feel.height_map->height_nm[i] = i % 2 ? 50'000 : -50'000;
+    feel.impact = phantom_impact{PHANTOM_IMPACT_FREQUENCY_MAX_HZ * PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ,
+                                 PHANTOM_EFFECT_FORCE_MAX_UN, PHANTOM_IMPACT_FREQUENCY_MAX_HZ,
+                                 PHANTOM_IMPACT_DECAY_MAX_US};
+    feel.field = Field{{{0, 0, 0}, {2'000'000, 2'000'000, 2'000'000}, {16, 16, 16}, 15'000'000, 0},
+                       std::vector<std::array<std::int32_t, 3>>(4096, {PHANTOM_EFFECT_FORCE_MAX_UN, 0, 0})};
+    for (std::size_t i = 0; i < 4096; i += 2) // 200 N from node to node
+        feel.field->force_un[i][0] = -PHANTOM_EFFECT_FORCE_MAX_UN;
+    feel.tip = phantom_tip{PHANTOM_TIP_RADIUS_MAX_NM, 0};
     EXPECT_EQ(submit_feel(feel), 0);
+    feel.tip->radius_nm = 1;
+    feel.height_map->header.amplitude_nm = 0;
+    feel.height_map->height_nm.assign(64 * 64, 0);
+    feel.impact = phantom_impact{0, 0, PHANTOM_IMPACT_FREQUENCY_MIN_HZ, PHANTOM_IMPACT_DECAY_MIN_US};
     feel.friction = phantom_friction{0, 0, 1, 0};
     feel.magnet = phantom_magnet{1, 0};
     feel.texture = phantom_texture{};
@@ -142,6 +269,23 @@ TEST_F(EffectBorder, TheTablesAreAsLongAsTheEffectsCallFor)
         EXPECT_EQ(submit_feel({.guides = good().guides}, [&](Plane& p) { p.tables[0] = count; }), -EINVAL);
     EXPECT_EQ(submit_feel({.guides = good().guides}, [](Plane& p) { p.tables[0] |= 1ULL << 32; }), -EINVAL)
         << "reserved";
+}
+
+TEST_F(EffectBorder, WhatFillsAFieldUpIsZero)
+{
+    const Feel feel{.field = good().field}; // 45 nodes: 135 integers
+    EXPECT_EQ(submit_feel(feel), 0);
+    EXPECT_EQ(submit_feel(feel, [](Plane& p) { p.tables.back() |= 1ULL << 32; }), -EINVAL);
+}
+
+TEST_F(EffectBorder, ATipMakesNoContactRadiusWrap)
+{
+    const auto with = [&](std::uint32_t radius_nm) {
+        return submit_feel({.tip = phantom_tip{1000, 0}},
+                           [&](Plane& p) { p.materials[0].radius_nm = radius_nm; });
+    };
+    EXPECT_EQ(with(0xffffffff - 1000), 0);
+    EXPECT_EQ(with(0xffffffff - 999), -EINVAL);
 }
 
 TEST_F(EffectBorder, OneEntryForEachMaterialThatNamesIt)

@@ -223,6 +223,16 @@ phantom_patch& add_rim(Plane& plane)
     return plane.patches.back();
 }
 
+/// A second object, that may move; no patch is its.
+phantom_object& mover(Plane& plane)
+{
+    phantom_object object = plane.objects[0];
+    object.object = 1;
+    object.flags = PHANTOM_OBJECT_MOVES;
+    plane.objects.push_back(object);
+    return plane.objects.back();
+}
+
 const BadSet bad_sets[] = {
     {"id 0", {}, [](phantom_set& s) { s.id = 0; }},
     {"id of the last set", {}, [](phantom_set& s) { s.id = 1; }},
@@ -309,12 +319,58 @@ const BadSet bad_sets[] = {
     {"unknown material effect", [](Plane& p) { p.materials[0].effects = 1u << 31; },
      [](phantom_set& s) { s.effects = 1u << 31; }},
     {"material reserved", [](Plane& p) { p.materials[0].reserved[3] = 1; }},
-    {"object moved", [](Plane& p) { p.objects[0].translation_nm[1] = 1; }},
-    {"object turned", [](Plane& p) { p.objects[0].rotation_q30[3] = 1; }},
-    {"object without a rotation", [](Plane& p) { p.objects[0].rotation_q30[0] = 0; }},
-    {"object moving", [](Plane& p) { p.objects[0].velocity_nm_s[2] = 1; }},
-    {"object turning", [](Plane& p) { p.objects[0].angular_velocity_urad_s[0] = 1; }},
-    {"object reserved", [](Plane& p) { p.objects[0].reserved[1] = 1; }},
+    {"resting object moved", [](Plane& p) { p.objects[0].translation_nm[1] = 1; }},
+    {"resting object turned", [](Plane& p) { p.objects[0].rotation_q30[3] = 1; }},
+    {"resting object without a rotation", [](Plane& p) { p.objects[0].rotation_q30[0] = 0; }},
+    {"resting object moving", [](Plane& p) { p.objects[0].velocity_nm_s[2] = 1; }},
+    {"resting object turning", [](Plane& p) { p.objects[0].angular_velocity_urad_s[0] = 1; }},
+    {"resting object with an origin", [](Plane& p) { p.objects[0].origin_nm[0] = -1; }},
+    {"object reserved", [](Plane& p) { p.objects[0].reserved = 1; }},
+    {"object flag", [](Plane& p) { p.objects[0].flags = PHANTOM_OBJECT_MOVES << 1; }},
+    {"moving object reserved", [](Plane& p) { mover(p).reserved = 1; }},
+    {"moving object with another flag", [](Plane& p) { mover(p).flags |= 1u << 31; }},
+    {"moving object without a rotation", [](Plane& p) { mover(p).rotation_q30[0] = 0; }},
+    {"rotation too short", [](Plane& p) { mover(p).rotation_q30[0] = PHANTOM_Q30_ONE - (1 << 20) - 1; }},
+    {"rotation too long", [](Plane& p) { mover(p).rotation_q30[0] = PHANTOM_Q30_ONE + (1 << 20) + 1; }},
+    {"rotation too long in its last part", [](Plane& p) { mover(p).rotation_q30[3] = PHANTOM_Q30_ONE; }},
+    {"rotation at the end of s32",
+     [](Plane& p) {
+         for (auto& component : mover(p).rotation_q30)
+             component = INT32_MIN;
+     }},
+    {"moved too far", [](Plane& p) { mover(p).translation_nm[2] = too_far; }},
+    {"moved too far below", [](Plane& p) { mover(p).translation_nm[0] = -too_far; }},
+    {"moving origin too far", [](Plane& p) { mover(p).origin_nm[1] = PHANTOM_OBJECT_REACH_NM + 1LL; }},
+    {"moving origin too far below", [](Plane& p) { mover(p).origin_nm[2] = -PHANTOM_OBJECT_REACH_NM - 1LL; }},
+    {"turning too fast",
+     [](Plane& p) { mover(p).angular_velocity_urad_s[1] = -PHANTOM_OBJECT_TURN_MAX_URAD_S - 1; }},
+    {"turning too fast about two axes",
+     [](Plane& p) {
+         mover(p).angular_velocity_urad_s[0] = 71'000'000;
+         mover(p).angular_velocity_urad_s[2] = -71'000'000;
+     }},
+    {"turning at the end of s32",
+     [](Plane& p) {
+         for (auto& about : mover(p).angular_velocity_urad_s)
+             about = INT32_MIN;
+     }},
+    {"four moving objects",
+     [](Plane& p) {
+         for (std::uint32_t i = 0; i <= PHANTOM_MOVING_MAX; ++i)
+             mover(p).object = i;
+     }},
+    {"neighbour in the scene of a face that moves",
+     [](Plane& p) {
+         mover(p);
+         p.patches[1].object = 1;
+     }},
+    {"neighbour of another moving object",
+     [](Plane& p) {
+         mover(p);
+         mover(p).object = 2;
+         p.patches[0].object = 1;
+         p.patches[1].object = 2;
+     }},
     {"the same object twice", [](Plane& p) { p.objects.push_back(p.objects[0]); }},
 };
 
@@ -339,6 +395,32 @@ TEST_F(Errors, LimitsThemselvesAreAccepted)
         plane.objects[i].object = i;
     plane.patches.resize(PHANTOM_PATCHES_MAX, plane.patches[0]);
     EXPECT_EQ(feeder.submit(plane), 0);
+}
+
+TEST_F(Errors, LimitsOfAMovingObjectAreAccepted)
+{
+    File feeder(machine);
+    Plane plane(1);
+    for (std::uint32_t i = 0; i < PHANTOM_MOVING_MAX; ++i) {
+        phantom_object& object = mover(plane);
+        object.object = i + 1;
+        object.rotation_q30[0] = PHANTOM_Q30_ONE + (i ? -1 : 1) * (1 << 20);
+        for (int axis = 0; axis < 3; ++axis) {
+            object.translation_nm[axis] = i ? PHANTOM_POSITION_MAX_NM : -PHANTOM_POSITION_MAX_NM;
+            object.origin_nm[axis] = i ? PHANTOM_OBJECT_REACH_NM : -std::int64_t{PHANTOM_OBJECT_REACH_NM};
+            object.velocity_nm_s[axis] = i ? INT32_MAX : INT32_MIN;
+        }
+        object.angular_velocity_urad_s[i % 3] =
+            i ? -PHANTOM_OBJECT_TURN_MAX_URAD_S : PHANTOM_OBJECT_TURN_MAX_URAD_S;
+    }
+    plane.patches[0].object = plane.patches[1].object = 2;
+    EXPECT_EQ(feeder.submit(plane), 0);
+    for (phantom_patch& patch : plane.patches)
+        for (auto& neighbour : patch.neighbour)
+            neighbour = PHANTOM_PATCH_NONE;
+    plane.header.id = 2;
+    plane.patches[1].object = 3;
+    EXPECT_EQ(feeder.submit(plane), 0) << "two faces in two frames";
 }
 
 TEST_F(Errors, FansAfterTheFacesAreAccepted)

@@ -92,6 +92,14 @@ struct Plane {
         std::memcpy(&tables[tables.size() - sizeof(T) / sizeof(tables[0])], &entry, sizeof(T));
     }
 
+    /// The samples of a table, and a zero if their number is odd.
+    void add_integers(const std::int32_t* from, std::size_t count)
+    {
+        const std::size_t before = tables.size();
+        tables.resize(before + (count + 1) / 2);
+        std::memcpy(&tables[before], from, count * sizeof(*from));
+    }
+
     phantom_set& set()
     {
         header.patch_count = std::uint32_t(patches.size());

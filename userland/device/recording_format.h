@@ -33,7 +33,7 @@
 #include "phantom_abi.h"
 
 #define RECORDING_MAGIC "PHANTREC" /* without its 0 */
-#define RECORDING_VERSION 1
+#define RECORDING_VERSION 2
 
 /* Payloads are no larger; a set with all it may carry in the kernel has 64 KiB. */
 #define RECORDING_CHUNK_MAX (1U << 30)

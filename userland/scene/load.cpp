@@ -56,6 +56,8 @@ mesh::PrepareOptions prepare_options(const SceneFile& file, const ObjectEntry& o
     // A shape's sizes are in mm already.
     prepare.scale *= object.shape ? 1.0 : millimetres_in(unit).value_or(1.0);
     prepare.two_sided = object.two_sided;
+    if (prepare.split_mm <= 0 && object.split_mm)
+        prepare.split_mm = *object.split_mm;
     if (prepare.fit_mm <= 0 && object.fit_mm)
         prepare.fit_mm = *object.fit_mm;
     if (prepare.weld_mm <= 0 && object.weld_mm)
@@ -135,6 +137,8 @@ Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, cons
     object.file = entry.mesh;
     object.pose = entry.pose;
     object.material = entry.material;
+    object.motion = entry.motion;
+    object.deformation = entry.deformation;
     const CacheRequest request{entry.mesh, prepare_options(file, entry, options), material.radius_mm};
     const Status status = options.cache && is_cacheable(entry.mesh)
                               ? fill_cached(entry, request, *options.cache, object, scene)
@@ -165,6 +169,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     scene.servo = entries->servo;
     scene.levels = entries->levels;
     scene.materials = entries->materials;
+    scene.effects = entries->effects;
     for (Material& material : scene.materials) {
         material.stiffness_n_mm = options.stiffness_n_mm.value_or(material.stiffness_n_mm);
         material.radius_mm = options.radius_mm.value_or(material.radius_mm);

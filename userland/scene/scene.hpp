@@ -16,7 +16,9 @@
 #include "mesh/prepare.hpp"
 #include "mesh/rims.hpp"
 #include "scene/cache_key.hpp"
+#include "scene/deformation.hpp"
 #include "scene/effects.hpp"
+#include "scene/motion.hpp"
 
 namespace phantom::scene {
 
@@ -53,6 +55,9 @@ struct Object : Surface {
     fdh::Pose pose;
     std::uint32_t material = 0;                     ///< index into Scene::materials
     std::uint32_t first_face = 0, first_vertex = 0; ///< scene-wide numbers of face 0 and vertex 0
+    /// From `pose` and the mesh as they are here, which is at rest.
+    std::optional<Motion> motion{};
+    std::optional<Deformation> deformation{};
 };
 
 struct DeviceSettings {
@@ -72,6 +77,7 @@ struct Scene {
     std::filesystem::path file;
     std::vector<Object> objects;
     std::vector<Material> materials; ///< at least one
+    std::vector<SpaceEffect> effects;
     DeviceSettings device;
     ServoSettings servo;
     double hulls_ms = 0;            ///< what building hulls took of loading, for the cache
@@ -84,8 +90,9 @@ struct Scene {
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
     [[nodiscard]] double max_radius_mm() const;
-    /// Names of the effects that some material calls for ("damping", "friction"), and of those that none
-    /// does.
+    /// Whether some object is of that material.
+    [[nodiscard]] bool uses(std::uint32_t material) const;
+    /// Names of the effects that a used material or space calls for ("damping", "guide"), and of the others.
     [[nodiscard]] std::vector<std::string> effects_called_for() const;
     [[nodiscard]] std::vector<std::string> effects_not_called_for() const;
 };

@@ -12,6 +12,7 @@
 #include "mesh/read.hpp"
 #include "mesh/vector.hpp"
 #include "scene/effects_file.hpp"
+#include "scene/motion_file.hpp"
 #include "scene/shapes/shape_keys.hpp"
 #include "scene/toml_reader.hpp"
 #include "scene/units.hpp"
@@ -35,15 +36,6 @@ std::array<double, 9> rotation_about(const mesh::Vec3& u, double angle)
     return {c + u[0] * u[0] * d,        u[0] * u[1] * d - u[2] * s, u[0] * u[2] * d + u[1] * s,
             u[1] * u[0] * d + u[2] * s, c + u[1] * u[1] * d,        u[1] * u[2] * d - u[0] * s,
             u[2] * u[0] * d - u[1] * s, u[2] * u[1] * d + u[0] * s, c + u[2] * u[2] * d};
-}
-
-/// Rotation of a unit quaternion (w, x, y, z), row-major.
-std::array<double, 9> rotation_of(const std::array<double, 4>& q)
-{
-    const auto [w, x, y, z] = q;
-    return {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-            2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-            2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
 }
 
 void read_axis_angle(TomlReader& pose, fdh::Pose& out)
@@ -104,14 +96,17 @@ struct ObjectKeys {
     Keys known, expected;
 
     explicit ObjectKeys(const toml::table& object)
-        : known(
-              joined({"name", "mesh", "shape", "unit", "fit_mm", "weld_mm", "two_sided", "pose", "material"},
-                     shape_keys()))
+        : known(joined({"name", "mesh", "shape", "unit", "fit_mm", "weld_mm", "split_mm", "two_sided", "pose",
+                        "material", "materials", "motion", "deform"},
+                       shape_keys()))
     {
         const auto own = shape_keys(object["shape"].value_or(std::string_view()));
-        expected = own.empty() ? Keys{"name",    "mesh",      "shape", "unit",    "fit_mm",
-                                      "weld_mm", "two_sided", "pose",  "material"}
-                               : joined({"name", "shape", "pose", "material", "two_sided"}, own);
+        expected =
+            own.empty()
+                ? Keys{"name",      "mesh", "shape",    "unit",      "fit_mm", "weld_mm", "split_mm",
+                       "two_sided", "pose", "material", "materials", "motion", "deform"}
+                : joined({"name", "shape", "split_mm", "pose", "material", "two_sided", "motion", "deform"},
+                         own);
     }
 };
 
@@ -128,6 +123,7 @@ void read_shape_object(TomlReader& object, const std::filesystem::path& scene, F
     refuse_beside(object, "unit", "shape: sizes are in mm");
     refuse_beside(object, "fit_mm", "shape: sizes are in mm");
     refuse_beside(object, "weld_mm", "shape: it is welded");
+    refuse_beside(object, "materials", "shape: it has no groups of faces");
     auto entry = read_shape(object, scene);
     if (!entry)
         return;
@@ -178,6 +174,11 @@ ObjectEntry read_object(TomlReader& object, const std::string& path, const std::
         object.has("shape") ? object.word("shape", shape_words()).value_or("") : out.mesh.stem().string());
     if (const toml::table* pose = object.table("pose"))
         out.pose = read_pose(*pose, path + "pose.", faults);
+    out.split_mm = object.number("split_mm", range::length_mm);
+    out.motion = read_motion(object, path, out.pose.translation, faults);
+    out.deformation = read_deformation(object, path, faults);
+    if (out.deformation)
+        out.deform_where = faults.where(object.source("deform"));
     return out;
 }
 
@@ -193,7 +194,7 @@ Material read_material(const std::string& name, const toml::table& table, Faults
         reader.number("stiffness_n_mm", range::stiffness_n_mm).value_or(material.stiffness_n_mm);
     material.radius_mm = reader.number("radius_mm", range::radius_mm).value_or(material.radius_mm);
     material.damping_ns_m = reader.number("damping_ns_m", range::damping_ns_m);
-    read_effects(reader, path, faults, material);
+    read_surface_effects(reader, path, faults, material);
     return material;
 }
 
@@ -212,15 +213,45 @@ void read_materials(TomlReader& root, Faults& faults, SceneFile& out)
     }
 }
 
+/// Index of the named material, or nothing.
+std::optional<std::uint32_t> find_material(const std::string& name, const SceneFile& scene)
+{
+    const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                    [&name](const Material& material) { return material.name == name; });
+    if (found == scene.materials.end())
+        return std::nullopt;
+    return static_cast<std::uint32_t>(found - scene.materials.begin());
+}
+
+/// The key materials: of groups of faces. What groups there are only the mesh knows.
+void read_group_materials(TomlReader& object, const std::string& path, Faults& faults, const SceneFile& scene,
+                          ObjectEntry& out)
+{
+    const toml::table* table = object.table("materials");
+    if (!table)
+        return;
+    for (const auto& [key, value] : *table) {
+        const std::string group(key.str());
+        const std::string at = fmt::format("{}materials.{}: ", path, group);
+        const auto name = value.value<std::string>();
+        const auto material = name ? find_material(*name, scene) : std::nullopt;
+        if (!name || !value.is_string())
+            faults.add(value.source(),
+                       at + fmt::format("is {}, expected the name of a [material.NAME]", shown(value)));
+        else if (!material)
+            faults.add(value.source(), at + fmt::format("no [material.{}] in this file", *name));
+        else
+            out.group_materials.push_back({group, *material, faults.where(value.source())});
+    }
+}
+
 /// Index of the named material; the default one is made when it is first needed.
 std::uint32_t material_index(TomlReader& object, SceneFile& out)
 {
     const auto wanted = object.text("material");
     const std::string name = wanted.value_or("default");
-    const auto found = std::find_if(out.materials.begin(), out.materials.end(),
-                                    [&name](const Material& material) { return material.name == name; });
-    if (found != out.materials.end())
-        return static_cast<std::uint32_t>(found - out.materials.begin());
+    if (const auto found = find_material(name, out))
+        return *found;
     if (wanted) {
         object.fault("material", fmt::format("no [material.{}] in this file", name));
         return 0;
@@ -249,6 +280,7 @@ void read_objects(TomlReader& root, const toml::table& table, const std::filesys
         ObjectEntry object = read_object(reader, path, scene, faults);
         object.where = faults.where(entry->source());
         object.material = material_index(reader, out);
+        read_group_materials(reader, path, faults, out, object);
         for (const ObjectEntry& other : out.objects) {
             if (other.name == object.name)
                 reader.fault("name", fmt::format("\"{}\" is taken by the object at {}, expected another name",
@@ -288,12 +320,15 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& file)
         return table.error();
     Faults faults(file.string());
     SceneFile out;
-    TomlReader root(*table, "", {"unit", "levels", "object", "material", "device", "servo"}, faults);
+    TomlReader root(*table, "", {"unit", "levels", "object", "material", "effect", "device", "servo"},
+                    faults);
     out.unit = root.word("unit", unit_words);
     if (const auto word = root.word("levels", level_words))
         out.levels = *word == "auto";
     read_materials(root, faults, out);
     read_objects(root, *table, file, faults, out);
+    if (const toml::table* effects = root.table("effect"))
+        read_space_effects(*effects, faults, out.materials, out.effects);
     if (const toml::table* device = root.table("device"))
         read_device(*device, faults, out.device);
     if (const toml::table* servo = root.table("servo"))

@@ -14,6 +14,13 @@
 
 namespace phantom::scene {
 
+/// `materials = { GROUP = "NAME" }` of an object.
+struct GroupMaterial {
+    std::string group;
+    std::uint32_t material = 0;
+    std::string where; ///< "file:line" of it
+};
+
 struct ObjectEntry {
     std::string where; ///< "file:line" of the [[object]]
     std::string name;
@@ -27,12 +34,19 @@ struct ObjectEntry {
     fdh::Pose pose;
     bool two_sided = false;
     std::uint32_t material = 0;
+    std::optional<Motion> motion;
+    std::optional<Deformation> deformation;
+    std::string deform_where;         ///< "file:line" of the key deform
+    std::optional<double> split_mm{}; ///< edges longer than this are bisected
+    /// Of faces of a group other than `material`, as the file writes it.
+    std::vector<GroupMaterial> group_materials;
 };
 
 struct SceneFile {
     std::optional<std::string> unit;
     std::vector<ObjectEntry> objects;
     std::vector<Material> materials; ///< at least one
+    std::vector<SpaceEffect> effects;
     DeviceSettings device;
     ServoSettings servo;
     std::optional<bool> levels; ///< nothing: as the program likes

@@ -17,6 +17,7 @@
 /* Smaller than the distance from the middle cell to the window's rim. */
 #define RELIEF_COVERAGE_NM (2 * RELIEF_CELL_NM)
 #define RELIEF_RADIUS_NM 1500000
+#define RELIEF_MAP 4 /* samples of a height map, each way */
 
 struct relief_set {
     struct phantom_set set;
@@ -27,11 +28,17 @@ struct relief_set {
         struct phantom_magnet magnet;
         struct phantom_friction friction;
         struct phantom_texture texture;
+        struct phantom_height_map height_map;
+        __s32 height_nm[RELIEF_MAP][RELIEF_MAP];
+        struct phantom_impact impact;
         struct phantom_constant constant;
         struct phantom_effect_count viscosities;
         struct phantom_viscosity viscosity;
         struct phantom_effect_count guides;
         struct phantom_guide guide;
+        struct phantom_field field;
+        __s32 node_un[2][2][2][3];
+        struct phantom_tip tip;
     } tables;
     struct phantom_object object;
 };

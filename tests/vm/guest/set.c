@@ -197,9 +197,51 @@ static void object_turning(struct vm_plate* plate, int at)
     plate->object.angular_velocity_urad_s[at] = 1;
 }
 
+static void object_with_an_origin(struct vm_plate* plate, int at)
+{
+    plate->object.origin_nm[at] = 1;
+}
+
+static void object_flag(struct vm_plate* plate, int at)
+{
+    plate->object.flags = 2u << at;
+}
+
 static void object_reserved(struct vm_plate* plate, int at)
 {
-    plate->object.reserved[at / 32] = 1u << at % 32;
+    plate->object.reserved = 1u << at;
+}
+
+/* ---- an object that moves ---- */
+
+static void mover_without_rotation(struct vm_plate* plate, int at)
+{
+    plate->object.flags = PHANTOM_OBJECT_MOVES;
+    plate->object.rotation_q30[0] = at ? -PHANTOM_Q30_ONE - (2 << 20) : 0;
+}
+
+static void mover_with_a_long_rotation(struct vm_plate* plate, int at)
+{
+    plate->object.flags = PHANTOM_OBJECT_MOVES;
+    plate->object.rotation_q30[1 + at] = PHANTOM_Q30_ONE;
+}
+
+static void mover_out_of_range(struct vm_plate* plate, int at)
+{
+    plate->object.flags = PHANTOM_OBJECT_MOVES;
+    plate->object.translation_nm[at / 2] = (at % 2 ? 1 : -1) * (PHANTOM_POSITION_MAX_NM + 1);
+}
+
+static void mover_beyond_reach(struct vm_plate* plate, int at)
+{
+    plate->object.flags = PHANTOM_OBJECT_MOVES;
+    plate->object.origin_nm[at / 2] = (at % 2 ? 1 : -1) * (PHANTOM_OBJECT_REACH_NM + 1LL);
+}
+
+static void mover_too_fast(struct vm_plate* plate, int at)
+{
+    plate->object.flags = PHANTOM_OBJECT_MOVES;
+    plate->object.angular_velocity_urad_s[at] = -PHANTOM_OBJECT_TURN_MAX_URAD_S - 1;
 }
 
 static const struct fault faults[] = {
@@ -235,7 +277,14 @@ static const struct fault faults[] = {
     {"object rotation w", 2, object_without_rotation},
     {"object velocity", 3, object_moving},
     {"object angular velocity", 3, object_turning},
-    {"object reserved bit", 64, object_reserved},
+    {"object origin", 3, object_with_an_origin},
+    {"object flags bit", 31, object_flag},
+    {"object reserved bit", 32, object_reserved},
+    {"moving object's rotation w", 2, mover_without_rotation},
+    {"moving object's rotation too long", 3, mover_with_a_long_rotation},
+    {"moving object's translation", 6, mover_out_of_range},
+    {"moving object's origin", 6, mover_beyond_reach},
+    {"moving object's angular velocity", 3, mover_too_fast},
 };
 #define FAULTS (sizeof(faults) / sizeof(faults[0]))
 
