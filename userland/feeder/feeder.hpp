@@ -54,7 +54,7 @@ class SetBuilder {
   private:
     void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out);
     /// False when the set has no room for the face's material or object.
-    bool claim(std::uint32_t object, device::PatchSet& out);
+    bool claim(std::uint32_t object, std::uint32_t face, device::PatchSet& out);
     /// Forgets the numbers that claim() gave for these faces.
     void release(const std::vector<std::array<std::uint32_t, 2>>& faces);
     void fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out);

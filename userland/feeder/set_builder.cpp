@@ -128,9 +128,9 @@ void SetBuilder::begin(const std::array<double, 3>& centre_mm, device::PatchSet&
     claimed_.clear();
 }
 
-bool SetBuilder::claim(std::uint32_t object, device::PatchSet& out)
+bool SetBuilder::claim(std::uint32_t object, std::uint32_t face, device::PatchSet& out)
 {
-    const std::uint32_t material = scene_.objects[object].material;
+    const std::uint32_t material = scene_.objects[object].material_of(face);
     const bool new_material = material_slot_[material] == no_slot;
     const bool new_object = object_slot_[object] == no_slot;
     if ((new_material && out.materials.size() == PHANTOM_MATERIALS_MAX) ||
@@ -171,7 +171,7 @@ phantom_patch SetBuilder::patch(std::uint32_t object, std::uint32_t face,
     }
     out.face = owner.first_face + face;
     out.object = object_slot_[object];
-    out.material = material_slot_[owner.material];
+    out.material = material_slot_[owner.material_of(face)];
     out.kind = PHANTOM_PATCH_FACE;
     out.surface = surface_number(owner, owner.rims.surface_of(face));
     return out;
@@ -194,7 +194,7 @@ void SetBuilder::add_fans(std::uint32_t object, std::uint32_t face,
         }
         entry.face = PHANTOM_PATCH_NONE;
         entry.object = object_slot_[object];
-        entry.material = material_slot_[owner.material];
+        entry.material = material_slot_[owner.material_of(face)];
         entry.kind = fan.over_vertex() ? PHANTOM_PATCH_CORNER : PHANTOM_PATCH_EDGE;
         entry.surface = surface_number(owner, owner.rims.surface_of(face));
         // An edge shorter than a nm is a point to the servo, and no fan.
@@ -261,7 +261,7 @@ void SetBuilder::release(const std::vector<std::array<std::uint32_t, 2>>& faces)
 {
     for (const auto& [object, face] : faces) {
         object_slot_[object] = no_slot;
-        material_slot_[scene_.objects[object].material] = no_slot;
+        material_slot_[scene_.objects[object].material_of(face)] = no_slot;
     }
 }
 
@@ -281,7 +281,7 @@ void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<d
         if (s > 0 && surfaces_[s - 1][0] == object)
             continue;
         const scene::Object& owner = scene_.objects[object];
-        const double radius_mm = scene_.materials[owner.material].radius_mm;
+        const double radius_mm = scene_.max_radius_mm(owner);
         near_rims_.clear();
         owner.rims.within(owner.mesh, to_object(owner.pose, centre_mm), coverage_mm + radius_mm, near_rims_);
         for (const mesh::Rims::Near& near : near_rims_) {
@@ -318,7 +318,7 @@ void SetBuilder::build(const fdh::Nearest& nearest, const std::array<double, 3>&
     std::size_t patches = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         patches += 1 + scene_.objects[hits[i].object].fans.of(hits[i].triangle).size() + rims_from_[i + 1];
-        if (patches > patches_max_ || !claim(hits[i].object, out)) {
+        if (patches > patches_max_ || !claim(hits[i].object, hits[i].triangle, out)) {
             coverage_mm = std::clamp(hits[i].distance - nearest.distance_error, 0.0, coverage_mm);
             faces_.resize(i);
             break;
@@ -332,7 +332,7 @@ void SetBuilder::build(const fdh::Nearest& nearest, const std::array<double, 3>&
     out.objects.clear();
     claimed_.clear();
     for (const auto& [object, face] : faces_)
-        claim(object, out);
+        claim(object, face, out);
     fill(faces_, out);
     const double covered_nm = std::floor(coverage_mm * nm_per_mm) - rounding_nm;
     out.header.radius_nm = to_u32(covered_nm);
@@ -347,12 +347,13 @@ void SetBuilder::build_all(const std::array<double, 3>& centre_mm, device::Patch
     for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
         if (scene_.objects[object].mesh.faces.empty())
             continue;
-        if (!claim(object, out)) {
-            complete = false;
-            break;
+        for (std::uint32_t face = 0; complete && face < scene_.objects[object].mesh.faces.size(); ++face) {
+            complete = claim(object, face, out);
+            if (complete)
+                faces_.push_back({object, face});
         }
-        for (std::uint32_t face = 0; face < scene_.objects[object].mesh.faces.size(); ++face)
-            faces_.push_back({object, face});
+        if (!complete)
+            break;
         for (std::uint32_t rim = 0; rim < scene_.objects[object].rims.edges.size(); ++rim)
             rims_.push_back({object, rim, 0});
     }
