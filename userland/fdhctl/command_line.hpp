@@ -30,6 +30,7 @@ struct Command {
 Run add_bench(CLI::App& app);
 Run add_cache(CLI::App& app);
 Run add_devices(CLI::App& app);
+Run add_effect(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_load(CLI::App& app);
 Run add_model(CLI::App& app);

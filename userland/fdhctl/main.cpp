@@ -18,6 +18,7 @@ constexpr Command commands[] = {
     {"status", "what the running servo does", add_status},
     {"rate", "change the running servo's rate", add_rate},
     {"model", "change the running servo's contact model", add_model},
+    {"effect", "list and change what the running scene feels like", add_effect},
     {"stop", "ramp down and end what runs", add_stop},
     {"info", "triangles, defects, effects and predicted cost of a scene", add_info},
     {"prepare", "the preprocessing alone, with its report", add_prepare},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The control socket: how `fdhctl status`, `rate`, `model` and `stop` reach a running session.
+// The control socket: how `fdhctl status`, `rate`, `model`, `effect` and `stop` reach a running session.
 //
 //   ${XDG_RUNTIME_DIR}/phantom_rt0.sock, or /tmp/phantom_rt-UID/phantom_rt0.sock (folder 0700)
 //
@@ -7,6 +7,9 @@
 //   {"command": "status"}                        -> {"ok": true, ...}
 //   {"command": "rate", "rate_hz": 3000}         -> {"ok": true}
 //   {"command": "model", "model": "paper", ...}  -> {"ok": true, ...}
+//   {"command": "effect"}                        -> {"ok": true, "effects": [{"name": "honey", ...}, ...]}
+//   {"command": "effect", "name": "honey", "on": false}                 -> {"ok": true, "effect": {...}}
+//   {"command": "effect", "name": "honey", "set": {"radius_mm": "9"}}   -> {"ok": true, "effect": {...}}
 //   {"command": "stop"}                          -> {"ok": true, "pid": 123}
 //   anything else                                -> {"ok": false, "error": "a sentence"}
 //

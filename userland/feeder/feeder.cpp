@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "base/vector.hpp"
+#include "feeder/effect_tables.hpp"
 #include "feeder/level_choice.hpp"
 
 namespace phantom::feeder {
@@ -72,8 +73,9 @@ struct Samples {
 
 /// What a level of detail is fed from.
 struct Detail {
-    Detail(const scene::Scene& scene, const fdh::SceneTree<14>& tree_, std::uint32_t patches_max)
-        : tree(tree_), builder(scene, patches_max)
+    Detail(const scene::Scene& scene, const fdh::SceneTree<14>& tree_, std::uint32_t patches_max,
+           std::shared_ptr<EffectTables> effects)
+        : tree(tree_), builder(scene, patches_max, std::move(effects))
     {
     }
     const fdh::SceneTree<14>& tree;
@@ -91,9 +93,10 @@ struct Feeder::Impl {
           options(options_),
           radius_mm(scene_.max_radius_mm()),
           budget(first_budget()),
+          effects(std::make_shared<EffectTables>(scene_)),
           choice(std::vector<DetailLevel>(1))
     {
-        details.push_back(std::make_unique<Detail>(scene_, tree_, device_.info().patches_max));
+        details.push_back(std::make_unique<Detail>(scene_, tree_, device_.info().patches_max, effects));
     }
 
     /// Options as wide as the module allows; user mode may raise patches_max.
@@ -118,12 +121,26 @@ struct Feeder::Impl {
             return;
         details.resize(1);
         for (const scene::Level& level : given->coarser) {
-            details.push_back(std::make_unique<Detail>(level.scene, level.tree, device.info().patches_max));
+            details.push_back(
+                std::make_unique<Detail>(level.scene, level.tree, device.info().patches_max, effects));
             details.back()->error_nm =
                 static_cast<std::uint32_t>(std::clamp(level.error_mm / mm_per_nm, 0.0, 4e9));
         }
         choice = LevelChoice(details_of(*given));
         levels = std::move(given); // its scenes and trees live as long as the details
+    }
+
+    /// Takes what feel() was given, if anything.
+    void take_feel()
+    {
+        std::optional<Feel> given;
+        {
+            const std::lock_guard lock(mutex);
+            given.swap(wished);
+        }
+        if (given)
+            effects->change(std::move(given->materials), std::move(given->effects));
+        effects->begin_round();
     }
 
     /// The time until the next set: the period, or as long as it took last time.
@@ -231,7 +248,8 @@ struct Feeder::Impl {
     device::Device& device;
     FeederOptions options;
     double radius_mm;
-    std::uint32_t budget; ///< of the next query; grows and shrinks
+    std::uint32_t budget;                  ///< of the next query; grows and shrinks
+    std::shared_ptr<EffectTables> effects; ///< of every detail's sets
     LevelChoice choice;
     std::vector<std::unique_ptr<Detail>> details; ///< by level, at least the scene itself
     std::shared_ptr<const scene::Levels> levels;  ///< what the coarser details are of
@@ -243,6 +261,11 @@ struct Feeder::Impl {
 
     mutable std::mutex mutex; ///< protects what follows
     std::shared_ptr<const scene::Levels> offered;
+    struct Feel {
+        std::vector<scene::Material> materials;
+        std::vector<scene::SpaceEffect> effects;
+    };
+    std::optional<Feel> wished;
     Totals totals;
     Samples query_us, interval_ms;
     struct QueryTime {
@@ -266,6 +289,12 @@ void Feeder::use(std::shared_ptr<const scene::Levels> levels)
     impl_->offered = std::move(levels);
 }
 
+void Feeder::feel(std::vector<scene::Material> materials, std::vector<scene::SpaceEffect> effects)
+{
+    const std::lock_guard lock(impl_->mutex);
+    impl_->wished = Impl::Feel{std::move(materials), std::move(effects)};
+}
+
 Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::array<double, 3>& proxy_mm,
                                 bool inside)
 {
@@ -273,6 +302,7 @@ Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::
     FeedReport report;
     const auto begin = Clock::now();
     auto queried = begin;
+    self.take_feel();
     if (self.options.all) {
         const mesh::Bounds bounds = self.scene.bounds();
         Vector middle{};

@@ -16,6 +16,8 @@
 
 namespace phantom::feeder {
 
+class EffectTables;
+
 struct FeederOptions {
     std::uint32_t budget = 64; ///< triangles in a set
     bool all = false;          ///< one set with every triangle of the scene; user mode only
@@ -44,7 +46,9 @@ struct FeedReport {
 class SetBuilder {
   public:
     /// patches_max: what the device takes in a set; build_all() does not ask.
-    explicit SetBuilder(const scene::Scene& scene, std::uint32_t patches_max = PHANTOM_PATCHES_MAX);
+    /// effects: of that scene, for several builders together; nullptr: the scene's as they are now.
+    explicit SetBuilder(const scene::Scene& scene, std::uint32_t patches_max = PHANTOM_PATCHES_MAX,
+                        std::shared_ptr<EffectTables> effects = nullptr);
     /// nearest: the answer to a query at the centre (world mm), sorted. Patches, materials or objects beyond
     /// what a set can carry cut it short: the coverage then ends at the first left out.
     void build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm, device::PatchSet& out);
@@ -71,6 +75,7 @@ class SetBuilder {
 
     const scene::Scene& scene_;
     std::uint32_t patches_max_;
+    std::shared_ptr<EffectTables> effects_;
     std::vector<std::uint32_t> slot_;                 ///< scratch: face number to index in the set
     std::vector<std::uint32_t> material_slot_;        ///< scratch: scene material to index in the set
     std::vector<std::uint32_t> claimed_;              ///< scratch: scene material of each one in the set
@@ -93,7 +98,7 @@ double edge_max_mm(const FeederOptions& options);
 /// (1 m) go, and with `all` the whole scene must lie within them.
 Status check_reach(const scene::Scene& scene, const FeederOptions& options);
 
-/// One feeder per device. Not thread-safe but for use(), totals(), last() and query_us().
+/// One feeder per device. Not thread-safe but for use(), feel(), totals(), last() and query_us().
 class Feeder {
   public:
     Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device::Device& device,
@@ -102,6 +107,10 @@ class Feeder {
     /// From the next round on the scene's levels of detail are there to choose from (level_choice.hpp), by
     /// the speed on the status page. A set says which it is of, and the servo fades from one to the other.
     void use(std::shared_ptr<const scene::Levels> levels);
+
+    /// From the next round on the scene's materials and effects are these. As many materials, of the same
+    /// contact radii.
+    void feel(std::vector<scene::Material> materials, std::vector<scene::SpaceEffect> effects);
 
     /// Queries round the tip (inside: round the middle of tip and proxy) and submits one set. The set also
     /// covers the tip of the round before, so that the servo sees what the path between them crosses.

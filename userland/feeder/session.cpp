@@ -17,6 +17,7 @@
 #include "feeder/path.hpp"
 #include "feeder/servo_choice.hpp"
 #include "feeder/status_report.hpp"
+#include "scene/effect_book.hpp"
 
 namespace phantom::feeder {
 
@@ -96,9 +97,10 @@ struct Session::Impl {
     Timings timings;
     bool started = false;
     std::atomic<bool> stop_requested{false};
-    mutable std::mutex mutex; ///< protects failure, levels and model
+    mutable std::mutex mutex; ///< protects failure, levels, model and effects
     std::optional<Error> failure;
     std::shared_ptr<const scene::Levels> levels; ///< set once; protected by mutex
+    std::optional<scene::EffectBook> effects;    ///< as they are felt now; protected by mutex
     std::jthread feeding;
     std::jthread simplifying;              ///< builds levels
     std::optional<control::Server> server; ///< last: its thread uses all of the above
@@ -115,6 +117,7 @@ struct Session::Impl {
         if (!loaded)
             return loaded.error();
         scene = std::move(*loaded);
+        effects.emplace(scene);
         timings.read_prepare_ms = milliseconds_since(opened) - scene.hulls_ms;
         const auto begin = Clock::now();
         tree.emplace(scene::build_tree<14>(scene));
@@ -333,6 +336,57 @@ struct Session::Impl {
         return {{"ok", true}, {"model", device::model_text(model)}};
     }
 
+    static json effect_json(const scene::EffectBook::Entry& entry)
+    {
+        json values = json::object();
+        for (const scene::EffectBook::Value& value : entry.values) {
+            if (!value.word.empty())
+                values[value.key] = value.word;
+            else if (value.numbers.size() == 1)
+                values[value.key] = value.numbers.front();
+            else
+                values[value.key] = value.numbers;
+        }
+        return {{"name", entry.name}, {"kind", entry.kind}, {"on", entry.on}, {"values", values}};
+    }
+
+    /// Takes what is asked for, if anything, and hands it to the feeder.
+    Status change_effect(const std::string& name, const json& request)
+    {
+        Status status = success();
+        if (request.contains("set")) {
+            scene::EffectBook::Words words;
+            for (const auto& [key, value] : request.at("set").items())
+                words.emplace_back(key, value.get<std::string>());
+            status = effects->change(name, words);
+        } else if (request.contains("on")) {
+            status = effects->turn(name, request.at("on").get<bool>());
+        } else {
+            return status;
+        }
+        if (status)
+            feeder->feel(effects->materials(), effects->effects());
+        return status;
+    }
+
+    json effect(const json& request)
+    {
+        const std::lock_guard guard(mutex);
+        if (!request.contains("name")) {
+            json list = json::array();
+            for (const scene::EffectBook::Entry& entry : effects->list())
+                list.push_back(effect_json(entry));
+            return {{"ok", true}, {"effects", list}};
+        }
+        const std::string name = request.at("name").get<std::string>();
+        if (Status status = change_effect(name, request); !status)
+            return refusal(status.error());
+        const Result<scene::EffectBook::Entry> entry = effects->entry(name);
+        if (!entry)
+            return refusal(entry.error());
+        return {{"ok", true}, {"effect", effect_json(*entry)}};
+    }
+
     static json refusal(const Error& error) { return {{"ok", false}, {"error", error.text()}}; }
 
     /// One line in, one line out; see control_socket.hpp.
@@ -348,6 +402,8 @@ struct Session::Impl {
                 reply = change_rate(request);
             else if (command == "model")
                 reply = change_model(request);
+            else if (command == "effect")
+                reply = effect(request);
             else if (command == "stop") {
                 stop_requested = true;
                 reply = {{"ok", true}, {"pid", ::getpid()}};

@@ -87,19 +87,6 @@ Vector face_normal(const Vector& a, const Vector& b, const Vector& c)
     return {n[0] / norm, n[1] / norm, n[2] / norm};
 }
 
-phantom_material material_of(const scene::Material& material)
-{
-    phantom_material out{};
-    out.stiffness_mn_mm = to_u32(material.stiffness_n_mm * 1e3);
-    out.radius_nm = std::max<std::uint32_t>(1, to_u32(material.radius_mm * nm_per_mm));
-    if (material.damping_ns_m) {
-        out.damping_mns_m = to_u32(*material.damping_ns_m * 1e3);
-        out.effects |= PHANTOM_EFFECT_DAMPING;
-    }
-    out.effects |= table_effects(material);
-    return out;
-}
-
 /// Of an object's surface, unique in the scene; 0 stays 0.
 std::uint32_t surface_number(const scene::Object& object, std::uint32_t surface)
 {
@@ -108,9 +95,11 @@ std::uint32_t surface_number(const scene::Object& object, std::uint32_t surface)
 
 } // namespace
 
-SetBuilder::SetBuilder(const scene::Scene& scene, std::uint32_t patches_max)
+SetBuilder::SetBuilder(const scene::Scene& scene, std::uint32_t patches_max,
+                       std::shared_ptr<EffectTables> effects)
     : scene_(scene),
       patches_max_(patches_max),
+      effects_(effects ? std::move(effects) : std::make_shared<EffectTables>(scene)),
       slot_(scene.triangles(), no_slot),
       material_slot_(scene.materials.size(), no_slot),
       object_slot_(scene.objects.size(), no_slot)
@@ -138,7 +127,7 @@ bool SetBuilder::claim(std::uint32_t object, std::uint32_t face, device::PatchSe
         return false;
     if (new_material) {
         material_slot_[material] = static_cast<std::uint32_t>(out.materials.size());
-        out.materials.push_back(material_of(scene_.materials[material]));
+        out.materials.push_back(effects_->material(material));
         claimed_.push_back(material);
     }
     if (new_object) {
@@ -230,7 +219,7 @@ void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, de
 {
     const std::array<std::int64_t, 3> origin_nm = {out.header.origin_nm[0], out.header.origin_nm[1],
                                                    out.header.origin_nm[2]};
-    out.effect_tables = effect_tables(scene_, claimed_);
+    effects_->fill(claimed_, out);
     out.patches.reserve(faces.size());
     for (const auto& [object, face] : faces) {
         const phantom_patch entry = patch(object, face, origin_nm);

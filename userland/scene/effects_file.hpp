@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// [material.NAME.EFFECT] of a scene file. Private to the scene unit.
+// [material.NAME.EFFECT] and [effect.NAME] of a scene file. Private to the scene unit.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
@@ -10,6 +11,10 @@
 namespace phantom::scene {
 
 /// Sub-tables of [material.NAME], whose stiffness and radius are known. path: "material.NAME.".
-void read_effects(TomlReader& reader, const std::string& path, Faults& faults, Material& material);
+void read_surface_effects(TomlReader& reader, const std::string& path, Faults& faults, Material& material);
+
+/// The table [effect] with its [effect.NAME]. Materials are read before: `fdhctl effect` knows both by name.
+void read_space_effects(const toml::table& effects, Faults& faults, const std::vector<Material>& materials,
+                        std::vector<SpaceEffect>& out);
 
 } // namespace phantom::scene

@@ -208,6 +208,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     scene.servo = entries->servo;
     scene.levels = entries->levels;
     scene.materials = entries->materials;
+    scene.effects = entries->effects;
     for (Material& material : scene.materials) {
         material.stiffness_n_mm = options.stiffness_n_mm.value_or(material.stiffness_n_mm);
         material.radius_mm = options.radius_mm.value_or(material.radius_mm);

@@ -19,6 +19,12 @@ inline constexpr Range radius_mm{0.001, 100.0, "0.001 ... 100 mm"};
 inline constexpr Range damping_ns_m{0.0, 1000.0, "0 ... 1000 N*s/m"};
 // What the module takes: phantom_abi.h.
 inline constexpr Range effect_force_n{0.0, 100.0, "0 ... 100 N"};
+inline constexpr Range constant_force_n{-100.0, 100.0, "-100 ... 100 N"};
+inline constexpr Range guide_force_n{1e-6, 100.0, "0.000001 ... 100 N"};
+inline constexpr Range viscosity_ns_m{0.0, 20.0, "0 ... 20 N*s/m"};
+inline constexpr Range drag_ns2_m2{0.0, 1000.0, "0 ... 1000 N*s^2/m^2"};
+// Where a medium or a guide ends. No farther, so that one which a set cannot name is out of the tip's reach.
+inline constexpr Range region_mm{0.1, 1000.0, "0.1 ... 1000 mm"};
 inline constexpr Range effect_stiffness_n_mm{0.001, 100.0, "0.001 ... 100 N/mm"};
 inline constexpr Range friction{0.0, 4.0, "0 ... 4"};
 inline constexpr Range stribeck_mm_s{0.0, 1000.0, "0 ... 1000 mm/s"};

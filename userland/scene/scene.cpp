@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "scene/effect_parameters.hpp"
+
 namespace phantom::scene {
 
 std::uint64_t Scene::triangles() const
@@ -59,27 +61,45 @@ double Scene::max_radius_mm(const Object& object) const
     return radius;
 }
 
+bool Scene::uses(std::uint32_t material) const
+{
+    return std::any_of(objects.begin(), objects.end(), [material](const Object& object) {
+        const std::vector<std::uint32_t>& groups = object.group_materials;
+        return groups.empty() ? object.material == material
+                              : std::find(groups.begin(), groups.end(), material) != groups.end();
+    });
+}
+
 namespace {
 
-struct EffectName {
+struct SurfaceEffectName {
     const char* name;
     bool (*called_for)(const Material& material);
 };
 
-constexpr EffectName effect_names[] = {
+constexpr SurfaceEffectName surface_effect_names[] = {
     {"damping", [](const Material& material) { return material.damping_ns_m.has_value(); }},
     {"magnet", [](const Material& material) { return material.magnet.has_value(); }},
     {"friction", [](const Material& material) { return material.friction.has_value(); }},
     {"texture", [](const Material& material) { return material.texture.has_value(); }},
 };
 
-// A material that no object has calls for nothing.
-std::vector<std::string> effects(const std::vector<Material>& materials, bool called_for)
+std::vector<std::string> effects_of(const Scene& scene, bool called_for)
 {
     std::vector<std::string> out;
-    for (const EffectName& effect : effect_names)
-        if (std::any_of(materials.begin(), materials.end(), effect.called_for) == called_for)
+    for (const SurfaceEffectName& effect : surface_effect_names) {
+        bool called = false;
+        for (std::uint32_t material = 0; material < scene.materials.size(); ++material)
+            called = called || (effect.called_for(scene.materials[material]) && scene.uses(material));
+        if (called == called_for)
             out.emplace_back(effect.name);
+    }
+    for (const std::string_view kind : space_kinds) {
+        const bool called = std::any_of(scene.effects.begin(), scene.effects.end(),
+                                        [kind](const SpaceEffect& effect) { return effect.kind() == kind; });
+        if (called == called_for)
+            out.emplace_back(kind);
+    }
     return out;
 }
 
@@ -87,12 +107,12 @@ std::vector<std::string> effects(const std::vector<Material>& materials, bool ca
 
 std::vector<std::string> Scene::effects_called_for() const
 {
-    return effects(materials, true);
+    return effects_of(*this, true);
 }
 
 std::vector<std::string> Scene::effects_not_called_for() const
 {
-    return effects(materials, false);
+    return effects_of(*this, false);
 }
 
 } // namespace phantom::scene

@@ -84,6 +84,7 @@ struct Scene {
     std::filesystem::path file;
     std::vector<Object> objects;
     std::vector<Material> materials; ///< at least one
+    std::vector<SpaceEffect> effects;
     DeviceSettings device;
     ServoSettings servo;
     double hulls_ms = 0;            ///< what building hulls took of loading, for the cache
@@ -96,10 +97,11 @@ struct Scene {
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
     [[nodiscard]] double max_radius_mm() const;
-    /// Of an object's materials the largest.
+/// Of an object's materials the largest.
     [[nodiscard]] double max_radius_mm(const Object& object) const;
-    /// Names of the effects that some material calls for ("damping", "friction"), and of those that none
-    /// does.
+    /// Whether some face is of that material.
+    [[nodiscard]] bool uses(std::uint32_t material) const;
+    /// Names of the effects that a used material or space calls for ("damping", "guide"), and of the others.
     [[nodiscard]] std::vector<std::string> effects_called_for() const;
     [[nodiscard]] std::vector<std::string> effects_not_called_for() const;
 };

@@ -194,7 +194,7 @@ Material read_material(const std::string& name, const toml::table& table, Faults
         reader.number("stiffness_n_mm", range::stiffness_n_mm).value_or(material.stiffness_n_mm);
     material.radius_mm = reader.number("radius_mm", range::radius_mm).value_or(material.radius_mm);
     material.damping_ns_m = reader.number("damping_ns_m", range::damping_ns_m);
-    read_effects(reader, path, faults, material);
+    read_surface_effects(reader, path, faults, material);
     return material;
 }
 
@@ -320,12 +320,15 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& file)
         return table.error();
     Faults faults(file.string());
     SceneFile out;
-    TomlReader root(*table, "", {"unit", "levels", "object", "material", "device", "servo"}, faults);
+    TomlReader root(*table, "", {"unit", "levels", "object", "material", "effect", "device", "servo"},
+                    faults);
     out.unit = root.word("unit", unit_words);
     if (const auto word = root.word("levels", level_words))
         out.levels = *word == "auto";
     read_materials(root, faults, out);
     read_objects(root, *table, file, faults, out);
+    if (const toml::table* effects = root.table("effect"))
+        read_space_effects(*effects, faults, out.materials, out.effects);
     if (const toml::table* device = root.table("device"))
         read_device(*device, faults, out.device);
     if (const toml::table* servo = root.table("servo"))

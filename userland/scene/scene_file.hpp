@@ -46,6 +46,7 @@ struct SceneFile {
     std::optional<std::string> unit;
     std::vector<ObjectEntry> objects;
     std::vector<Material> materials; ///< at least one
+    std::vector<SpaceEffect> effects;
     DeviceSettings device;
     ServoSettings servo;
     std::optional<bool> levels; ///< nothing: as the program likes

@@ -34,6 +34,8 @@ std::string shown(const toml::node& node)
     node.visit([&text](const auto& value) {
         if constexpr (toml::is_string<decltype(value)>)
             text << '"' << value.get() << '"';
+        else if constexpr (toml::is_floating_point<decltype(value)>)
+            text << fmt::format("{}", value.get()); // as few digits as name it
         else if constexpr (toml::is_value<decltype(value)>)
             text << value;
     });

@@ -78,6 +78,36 @@ TEST_F(Load, StatusRateModelAndStopReachItFromElsewhere)
     EXPECT_FALSE(exists("phantom_rt0.sock"));
 }
 
+TEST_F(Load, EffectsAreListedAndChangedWhileItRuns)
+{
+    const std::string scene =
+        write("a.toml", "[[object]]\nshape = \"box\"\nsize_mm = [20, 20, 20]\nmaterial = \"plate\"\n"
+                        "[material.plate.friction]\nstatic = 0.5\ndynamic = 0.4\n"
+                        "[effect.wind]\nkind = \"constant\"\nforce_n = [0, 0.25, 0]\n");
+    Running load = start_load({scene, "--usermode"});
+    Outcome answer = run({"effect"});
+    EXPECT_EQ(answer.status, 0) << answer.err;
+    EXPECT_NE(answer.out.find("plate.friction  friction"), std::string::npos) << answer.out;
+    EXPECT_NE(answer.out.find("force_n=0,0.25,0"), std::string::npos) << answer.out;
+    answer = run({"effect", "plate.friction", "static=0.3"});
+    EXPECT_EQ(answer.status, 1);
+    EXPECT_EQ(answer.err,
+              "fdhctl: effect plate.friction: dynamic: is 0.4, expected no more than static, 0.3\n");
+    answer = run({"effect", "plate.friction", "static=0.3", "dynamic=0.1", "--json"});
+    ASSERT_EQ(answer.status, 0) << answer.err;
+    EXPECT_EQ(json::parse(answer.out)["effect"]["values"]["dynamic"], 0.1);
+    EXPECT_EQ(run({"effect", "wind", "force_n=0,0,-0.5"}).status, 0);
+    double force = 0; // the tip rests above the box: only the wind
+    for (int attempt = 0; attempt < 300 && std::abs(force - 0.5) > 1e-3; ++attempt, ::usleep(10000))
+        force = status()["force_magnitude_n"].get<double>();
+    EXPECT_NEAR(force, 0.5, 1e-3);
+    EXPECT_EQ(run({"effect", "wind", "off"}).status, 0);
+    for (int attempt = 0; attempt < 300 && force > 1e-6; ++attempt, ::usleep(10000))
+        force = status()["force_magnitude_n"].get<double>();
+    EXPECT_NEAR(force, 0, 1e-6);
+    EXPECT_EQ(run({"effect", "wind", "gust"}).status, 2);
+}
+
 TEST_F(Load, ASecondOneIsRefusedAndToldWhoRuns)
 {
     const std::string mesh = sphere();
@@ -183,7 +213,8 @@ TEST_F(Load, ASetOfCommandsAnswersInJson)
     const json facts = json::parse(info.out);
     EXPECT_EQ(facts["triangles"], 2208);
     EXPECT_TRUE(facts["objects"][0]["report"]["watertight"].get<bool>());
-    EXPECT_EQ(facts["effects"]["not_called_for"], json::array({"damping", "magnet", "friction", "texture"}));
+    EXPECT_EQ(facts["effects"]["not_called_for"],
+              json::array({"damping", "magnet", "friction", "texture", "constant", "viscosity", "guide"}));
     EXPECT_GT(facts["tick"]["median_ns"].get<double>(), 0);
 
     const Outcome prepared = run({"prepare", mesh, "-o", path("out.ply"), "--fit", "50", "--json"});

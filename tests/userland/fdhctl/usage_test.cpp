@@ -24,7 +24,7 @@ TEST_F(Usage, EveryCommandHasHelp)
 {
     const Outcome all = run({"--help"});
     EXPECT_EQ(all.status, 0);
-    for (const char* command : {"load", "status", "rate", "model", "stop", "info", "prepare", "stroke",
+    for (const char* command : {"load", "status", "rate", "model", "effect", "stop", "info", "prepare", "stroke",
                                 "trace", "record", "replay", "bench", "devices", "view"}) {
         EXPECT_NE(all.out.find(std::string("\n  ") + command), std::string::npos) << command;
         const Outcome outcome = run({command, "--help"});
@@ -71,7 +71,7 @@ TEST_F(Usage, WrongUseIsStatusTwoAndOneLine)
 TEST_F(Usage, WithoutASessionStatusRateModelAndStopSaySo)
 {
     for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"status"}, {"rate", "2000"}, {"model", "paper"}, {"stop"}}) {
+         {std::vector<std::string>{"status"}, {"rate", "2000"}, {"model", "paper"}, {"effect"}, {"stop"}}) {
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.status, 1) << arguments[0];
         EXPECT_EQ(outcome.err, "fdhctl: nothing is running (fdhctl load SCENE starts it)\n");

@@ -196,10 +196,16 @@ TEST(SetBuilder, EffectsHaveTheirTablesAndTheModuleTakesThem)
     left.friction = scene::Friction{0.6, 0.4, 2, 10};
     right.friction = scene::Friction{0.3, 0.2, 1, 0};
     right.magnet = scene::Magnet{0.25, 0.1};
-    right.texture = scene::Texture{0.05, 2, {0, -1, 0}};
+    right.texture = scene::Texture{{0.05, 2, {0, -1, 0}}, {}};
+    feeder::SetBuilder builder(built.scene);
+    const auto build = [&built, &builder](const Vector& centre, std::size_t count) {
+        built.tree.nearest(centre, count, 50.0, built.near);
+        built.near.sort();
+        builder.build(built.near, centre, built.set);
+    };
     Result<device::Device> device = device::Device::open_usermode({.virtual_clock = true});
     ASSERT_TRUE(device);
-    built.at(between, 100);
+    build(between, 100);
     const phantom_magnet magnet{250'000, 100'000};
     const phantom_friction first{600'000, 400'000, 2000, 10'000}, second{300'000, 200'000, 1000, 0};
     const phantom_texture texture{{50'000, 0}, {{0, -500'000, 0}, {0, 0, 0}}};
@@ -218,7 +224,7 @@ TEST(SetBuilder, EffectsHaveTheirTablesAndTheModuleTakesThem)
     EXPECT_EQ(built.set.header.effects & ~PHANTOM_EFFECT_DAMPING,
               PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION | PHANTOM_EFFECT_TEXTURE);
     // Only the first sphere's, where it is alone.
-    built.at({-20.5, 0, 0}, 20);
+    build({-20.5, 0, 0}, 20);
     expected.clear();
     add(first);
     EXPECT_EQ(built.set.effect_tables, expected);

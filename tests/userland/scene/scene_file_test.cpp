@@ -49,6 +49,13 @@ TEST(SceneFile, SoundFileLoads)
             "[material.soft.magnet]\nrange_mm = 0.5\nforce_n = 0.3\n"
             "[material.soft.friction]\nstatic = 0.6\ndynamic = 0.4\nstiffness_n_mm = 2\nstribeck_mm_s = 10\n"
             "[material.soft.texture]\namplitude_mm = 0.05\nwavelength_mm = 1\ndirection = [1, 1, 0]\n"
+            "second = { amplitude_mm = 0.04, wavelength_mm = 0.8, direction = [1, -1, 0] }\n"
+            "[effect.gravity]\nkind = \"constant\"\nforce_n = [0, 0, -0.5]\n"
+            "[effect.honey]\nkind = \"viscosity\"\nviscosity_ns_m = 3\ndrag_ns2_m2 = 1\ncentre_mm = [1, 2, "
+            "3]\n"
+            "radius_mm = 20\nborder_mm = 5\n"
+            "[effect.rail]\nkind = \"guide\"\nto = \"line\"\npoint_mm = [0, 0, 50]\ndirection = [1, 0, 0]\n"
+            "stiffness_n_mm = 0.5\nforce_n = 2\nreach_mm = 10\n"
             "[device]\nmax_force_n = 3.3\nslew_n_per_ms = 1\nramp_ms = 250\n"
             "[servo]\nrate_hz = 3000\nmodel = \"projected\"\ncombine = \"bounded\"\n"
             "proxy = \"constrained\"\narith = \"float\"\nsteps = 2\ncrossfade_ms = 50\n"),
@@ -58,7 +65,7 @@ TEST(SceneFile, SoundFileLoads)
 TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
 {
     EXPECT_EQ(error_of("units = \"mm\"\n[[object]]\nmesh = \"part.obj\"\n"),
-              "a.toml:1: units: unknown key, expected unit, levels, object, material, device, servo");
+              "a.toml:1: units: unknown key, expected unit, levels, object, material, effect, device, servo");
     EXPECT_EQ(in_object("colour = \"red\"\n"), "a.toml:3: object 1: colour: unknown key, expected name, "
                                                "mesh, shape, unit, fit_mm, weld_mm, split_mm, "
                                                "two_sided, pose, material, materials, motion, deform");
@@ -128,7 +135,7 @@ TEST(SceneFile, ValuesOutOfRange)
     EXPECT_EQ(
         below_object("[material.soft.texture]\namplitude_mm = 0.1\nwavelength_mm = 1\ndirection = [0, 0, "
                      "0]\n"),
-        "a.toml:7: material.soft.texture.direction: has no length, expected the way across the ribs");
+        "a.toml:7: material.soft.texture.direction: has no length, expected a direction");
     EXPECT_EQ(below_object("[servo]\nrate_hz = 500\n"),
               "a.toml:5: servo.rate_hz: is 500, expected 1000 ... 10000 Hz");
     EXPECT_EQ(below_object("[servo]\ncrossfade_ms = 0\n"),

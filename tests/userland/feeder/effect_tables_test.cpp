@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Effects of a scene as sets carry them: against the structs of the ABI, near and far, before and after a
+// change. What is built goes to the module, which has the last word.
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "feeder/effect_tables.hpp"
+#include "feeder/feeder.hpp"
+#include "scenes.hpp"
+
+namespace phantom::test {
+namespace {
+
+class SpaceTables : public testing::Test {
+  protected:
+    SpaceTables() : scene(sphere_scene()) {}
+
+    /// The tables of a set of that origin; the module must take it.
+    const std::vector<std::uint64_t>& tables(feeder::EffectTables& effects, const Vector& origin_mm)
+    {
+        set = {};
+        for (int axis = 0; axis < 3; ++axis)
+            set.header.origin_nm[axis] = std::llround(origin_mm[axis] * 1e6);
+        effects.fill({}, set);
+        EXPECT_TRUE(device->submit(set));
+        return set.effect_tables;
+    }
+    template <class T>
+    T entry(std::size_t bytes) const
+    {
+        T out;
+        EXPECT_LE(bytes + sizeof out, set.effect_tables.size() * sizeof(std::uint64_t));
+        std::memcpy(&out, reinterpret_cast<const char*>(set.effect_tables.data()) + bytes, sizeof out);
+        return out;
+    }
+
+    scene::Scene scene;
+    Result<device::Device> device = device::Device::open_usermode({.virtual_clock = true});
+    device::PatchSet set;
+};
+
+TEST_F(SpaceTables, OfAllKindsFollowTheOrderOfTheBits)
+{
+    scene.effects.push_back(
+        {"rail", scene::Guide{scene::Guide::Place::line, {1, 2, 3}, {0, 0.6, 0.8}, 0.5, 2, 10}});
+    scene.effects.push_back({"gravity", scene::ConstantForce{{0, 0, -0.5}}});
+    scene.effects.push_back({"honey", scene::Viscosity{3, 2, {4, 5, 6}, 20, {}}});
+    scene.effects.push_back({"air", scene::Viscosity{0, 1, {}, {}, {}}});
+    scene.effects.push_back({"wind", scene::ConstantForce{{0.25, 0, 0}}});
+    feeder::EffectTables effects(scene);
+    tables(effects, {0, 0, 0});
+    EXPECT_EQ(set.header.effects, PHANTOM_EFFECT_CONSTANT | PHANTOM_EFFECT_VISCOSITY | PHANTOM_EFFECT_GUIDE);
+    const auto constant = entry<phantom_constant>(0);
+    EXPECT_EQ(constant.force_un[0], 250'000); // both are there
+    EXPECT_EQ(constant.force_un[2], -500'000);
+    EXPECT_EQ(entry<phantom_effect_count>(16).count, 2U);
+    const auto honey = entry<phantom_viscosity>(24);
+    EXPECT_EQ(honey.centre_nm[1], 5'000'000);
+    EXPECT_EQ(honey.radius_nm, 20'000'000U);
+    EXPECT_EQ(honey.border_nm, 5'000'000U); // a quarter
+    EXPECT_EQ(honey.viscosity_mns_m, 3000U);
+    EXPECT_EQ(honey.drag_mns2_m2, 2000U);
+    EXPECT_EQ(entry<phantom_viscosity>(24 + sizeof honey).radius_nm, 0U);
+    const std::size_t guides = 24 + 2 * sizeof honey;
+    EXPECT_EQ(entry<phantom_effect_count>(guides).count, 1U);
+    const auto rail = entry<phantom_guide>(guides + 8);
+    EXPECT_EQ(rail.kind, static_cast<__u32>(PHANTOM_GUIDE_LINE));
+    EXPECT_EQ(rail.point_nm[2], 3'000'000);
+    EXPECT_NEAR(rail.direction_q30[2], 0.8 * PHANTOM_Q30_ONE, 1);
+    EXPECT_EQ(rail.stiffness_mn_mm, 500U);
+    EXPECT_EQ(rail.force_un, 2'000'000U);
+    EXPECT_EQ(rail.reach_nm, 10'000'000U);
+    EXPECT_EQ(set.effect_tables.size() * 8, guides + 8 + sizeof rail);
+}
+
+TEST_F(SpaceTables, OfNothingAreNothing)
+{
+    feeder::EffectTables effects(scene);
+    EXPECT_TRUE(tables(effects, {0, 0, 0}).empty());
+    EXPECT_EQ(set.header.effects, 0U);
+}
+
+TEST_F(SpaceTables, AreTheSameWhereverTheSetIsNear)
+{
+    scene.effects.push_back({"p", scene::Guide{scene::Guide::Place::point, {10, 0, 0}, {}, 1, 1, {}}});
+    scene.effects.push_back({"l", scene::Guide{scene::Guide::Place::line, {0, 9, 0}, {1, 0, 0}, 1, 1, {}}});
+    feeder::EffectTables effects(scene);
+    const auto here = tables(effects, {0, 0, 0});
+    EXPECT_EQ(tables(effects, {499, -499, 499}), here);
+    EXPECT_EQ(tables(effects, {900, 900, -900}), here) << "another window, the same places";
+}
+
+TEST_F(SpaceTables, FarPlacesAreNamedWithinReachOrLeftOut)
+{
+    scene.effects.push_back({"spring", scene::Guide{scene::Guide::Place::point, {0, 0, 0}, {}, 1, 1, {}}});
+    scene.effects.push_back(
+        {"plane", scene::Guide{scene::Guide::Place::plane, {0, 0, 7}, {0, 0, 1}, 1, 1, 100}});
+    scene.effects.push_back({"ends", scene::Guide{scene::Guide::Place::point, {0, 0, 0}, {}, 1, 1, 1000}});
+    scene.effects.push_back({"honey", scene::Viscosity{3, 0, {0, 0, 0}, 1000, {}}});
+    feeder::EffectTables effects(scene);
+    tables(effects, {0, 0, 0});
+    EXPECT_EQ(set.header.effects, PHANTOM_EFFECT_VISCOSITY | PHANTOM_EFFECT_GUIDE);
+    EXPECT_EQ(entry<phantom_effect_count>(8 + sizeof(phantom_viscosity)).count, 3U);
+    // 20 m along x the plane is as near as ever, the spring still pulls back, the others have ended.
+    tables(effects, {20'000, 0, 0});
+    EXPECT_EQ(set.header.effects, PHANTOM_EFFECT_GUIDE);
+    ASSERT_EQ(entry<phantom_effect_count>(0).count, 2U);
+    const auto spring = entry<phantom_guide>(8), plane = entry<phantom_guide>(8 + sizeof spring);
+    EXPECT_EQ(spring.point_nm[0], 20'000'000'000 - 3'100'000'000);
+    EXPECT_EQ(spring.point_nm[1], 0);
+    EXPECT_EQ(plane.point_nm[0], 20'000'000'000);
+    EXPECT_EQ(plane.point_nm[2], 7'000'000);
+    // Every origin is near enough to what was named before it.
+    for (double x = 20'000; x > 0; x -= 100)
+        tables(effects, {x, 0.3 * x, -0.3 * x});
+    EXPECT_EQ(entry<phantom_effect_count>(8 + sizeof(phantom_viscosity)).count, 3U);
+}
+
+TEST_F(SpaceTables, AChangeRampsStiffnessAndDamping)
+{
+    feeder::EffectTables effects(scene);
+    std::vector<scene::Material> harder = scene.materials;
+    harder[0].stiffness_n_mm = 3;
+    harder[0].damping_ns_m = 5;
+    harder[0].friction = scene::Friction{0.5, {}, 1, 0};
+    effects.change(harder, {});
+    __u32 last = effects.material(0).stiffness_mn_mm;
+    EXPECT_EQ(last, 1000U);
+    for (std::uint32_t round = 0; round < feeder::EffectTables::ramp_rounds; ++round) {
+        effects.begin_round();
+        const __u32 now = effects.material(0).stiffness_mn_mm;
+        EXPECT_LE(now - last, 2000U / feeder::EffectTables::ramp_rounds + 1) << round;
+        last = now;
+    }
+    EXPECT_EQ(last, 3000U);
+    EXPECT_EQ(effects.material(0).damping_mns_m, 5000U);
+    EXPECT_EQ(effects.material(0).effects, PHANTOM_EFFECT_DAMPING | PHANTOM_EFFECT_FRICTION);
+    // Damping leaves when it is nothing.
+    effects.change(scene.materials, {});
+    effects.begin_round();
+    EXPECT_EQ(effects.material(0).effects, PHANTOM_EFFECT_DAMPING);
+    for (std::uint32_t round = 0; round < feeder::EffectTables::ramp_rounds; ++round)
+        effects.begin_round();
+    EXPECT_EQ(effects.material(0).effects, 0U);
+    EXPECT_EQ(effects.material(0).damping_mns_m, 0U);
+    EXPECT_EQ(effects.material(0).stiffness_mn_mm, 1000U);
+}
+
+TEST_F(SpaceTables, AChangeReachesTheNextSetOfTheFeeder)
+{
+    const fdh::SceneTree<14> tree = scene::build_tree<14>(scene);
+    feeder::Feeder feeder(scene, tree, *device, {});
+    const Vector tip = {0, 0, 80};
+    ASSERT_TRUE(feeder.feed(tip, tip, false));
+    ASSERT_TRUE(device->move_simulated_tip({0, 0, 80'000'000}));
+    phantom_start start{};
+    start.flags = PHANTOM_START_LIMITS_OFF;
+    ASSERT_TRUE(device->start(start));
+    ASSERT_TRUE(device->step(50));
+    EXPECT_EQ(device->status().force_un[1], 0);
+    feeder.feel(scene.materials, {{"wind", scene::ConstantForce{{0, 0.5, 0}}}});
+    ASSERT_TRUE(feeder.feed(tip, tip, false));
+    std::int32_t last = 0;
+    for (int tick = 0; tick < 50; ++tick) {
+        ASSERT_TRUE(device->step(1));
+        const std::int32_t now = device->status().force_un[1];
+        EXPECT_LE(std::abs(now - last), 500'000 / 10) << tick; // it fades in 20 ms
+        last = now;
+    }
+    EXPECT_EQ(last, 500'000);
+}
+
+} // namespace
+} // namespace phantom::test
