@@ -6,6 +6,7 @@
 
 #include "mesh/read.hpp"
 #include "scene/cache.hpp"
+#include "scene/deforming_surface.hpp"
 #include "scene/ranges.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
@@ -157,6 +158,24 @@ Status assign_groups(const ObjectEntry& entry, Object& object)
     return success();
 }
 
+/// A tip that touches must still be within the contact radius when the next shape comes, one that is late
+/// included: so far the servo carries a proxy (phantom_abi.h, OTHER GEOMETRY).
+Status check_rise(const ObjectEntry& entry, const Object& object, double radius_mm)
+{
+    if (!entry.deformation)
+        return success();
+    constexpr double late = 2;
+    const double interval_s = late * revision_interval_s(object.mesh.faces.size());
+    const double rise_mm = entry.deformation->speed_max_mm_s() * interval_s;
+    if (rise_mm <= radius_mm)
+        return success();
+    return Error{entry.deform_where,
+                 fmt::format("{}: deform: rises by {:.3g} mm in the {:.0f} ms between two shapes of {} "
+                             "triangles, expected no more than the contact radius, {:g} mm (a smaller "
+                             "amplitude_mm or frequency_hz)",
+                             object.name, rise_mm, 1e3 * interval_s, object.mesh.faces.size(), radius_mm)};
+}
+
 /// The largest contact radius of the object's materials.
 double reach_mm(const ObjectEntry& entry, const Scene& scene)
 {
@@ -184,6 +203,8 @@ Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, cons
         return status.error();
     if (const Status assigned = assign_groups(entry, object); !assigned)
         return assigned.error();
+    if (const Status risen = check_rise(entry, object, request.reach_mm); !risen)
+        return risen.error();
     return object;
 }
 

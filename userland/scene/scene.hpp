@@ -97,7 +97,7 @@ struct Scene {
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
     [[nodiscard]] double max_radius_mm() const;
-/// Of an object's materials the largest.
+    /// Of an object's materials the largest.
     [[nodiscard]] double max_radius_mm(const Object& object) const;
     /// Whether some face is of that material.
     [[nodiscard]] bool uses(std::uint32_t material) const;
