@@ -62,6 +62,7 @@ phantom_effects tables_of(const Feel& feel)
     take(PHANTOM_EFFECT_MAGNET, feel.magnet, out.magnet);
     take(PHANTOM_EFFECT_FRICTION, feel.friction, out.friction);
     take(PHANTOM_EFFECT_TEXTURE, feel.texture, out.texture);
+    take(PHANTOM_EFFECT_IMPACT, feel.impact, out.impact);
     take(PHANTOM_EFFECT_CONSTANT, feel.constant, out.constant);
     out.viscosity = feel.viscosity.data();
     out.viscosity_count = std::uint32_t(feel.viscosity.size());
