@@ -32,8 +32,7 @@ height_mm = 20
 split_mm = 4
 pose = { translation_mm = [-20, 5, 0], axis = [0, 1, 0], angle_deg = 20 }
 motion = { kind = "turntable", axis = [0, 0, 1], centre_mm = [-10, 0, 0], rev_per_s = 1.5, ramp_s = 0.3 }
-deform = { shape = "drum", centre_mm = [0, 0, 10], radius_mm = 29, depth_mm = 15, amplitude_mm = 4,
-           frequency_hz = 1.5, ramp_s = 0.1 }
+deform = { shape = "drum", centre_mm = [0, 0, 10], radius_mm = 29, depth_mm = 15, amplitude_mm = 4, frequency_hz = 1.5, ramp_s = 0.1 }
 
 [[object]]
 name = "ball"
