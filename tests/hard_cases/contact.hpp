@@ -25,6 +25,15 @@ struct Settings {
     double damping = 0; ///< of every material, N s/m
 };
 
+/// With the proxy of the paper.
+inline Settings with_proxy(std::uint32_t model = PHANTOM_MODEL_PROJECTED)
+{
+    Settings settings;
+    settings.model = model;
+    settings.proxy = PHANTOM_PROXY_PAPER;
+    return settings;
+}
+
 struct Touch {
     Vec3 force{}, normal{}, proxy{};
     unsigned contacts = 0, folded = 0, saturated = 0;

@@ -48,14 +48,6 @@ double step_on_the_grid(Contact& contact, Vec3 a, Vec3 b)
     return length(subtract(fa, fb));
 }
 
-Settings with_proxy(std::uint32_t model = PHANTOM_MODEL_PROJECTED)
-{
-    Settings settings;
-    settings.model = model;
-    settings.proxy = PHANTOM_PROXY_PAPER;
-    return settings;
-}
-
 /// Goes along from-to in steps of 1 um until the path enters the surface. Returns the steps made.
 unsigned expect_continuous(const std::vector<reference::Triangle>& triangles, const Vec3& from,
                            const Vec3& to, Settings settings = with_proxy(), double jump = smooth,

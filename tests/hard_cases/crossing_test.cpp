@@ -13,14 +13,6 @@ namespace {
 using namespace phantom;
 using namespace phantom::hard;
 
-Settings with_proxy(std::uint32_t model = PHANTOM_MODEL_PROJECTED)
-{
-    Settings s;
-    s.model = model;
-    s.proxy = PHANTOM_PROXY_PAPER;
-    return s;
-}
-
 /// One tick from a to b, from outside.
 Touch stroke(Contact& contact, const Vec3& a, const Vec3& b)
 {

@@ -49,6 +49,9 @@ struct Result {
     double margin = 1e9;
 };
 
+/// A tip nearer than that to a wall, a face or the shell's end may be decided either way in float.
+inline constexpr double margin_mm = 2e-4;
+
 class Reference {
   public:
     Reference(std::vector<Triangle> triangles, Options options);

@@ -12,12 +12,11 @@ namespace {
 
 using namespace phantom;
 using namespace phantom::hard;
+using reference::margin_mm;
 using reference::Reference;
 
 /// The border's grid: forces are whole uN.
 constexpr double double_tolerance_n = 2e-6;
-/// A tip nearer than that to a wall, a face or the shell's end may be decided either way in float.
-constexpr double margin_mm = 2e-4;
 
 Settings settings_of(const reference::Options& options)
 {

@@ -19,11 +19,10 @@ namespace {
 
 using namespace phantom;
 using namespace phantom::hard;
+using reference::margin_mm;
 using reference::Reference;
 
 constexpr double size_mm = 120, radius_mm = 1, crease_deg = 60;
-/// A tip nearer than that to a wall, a face or the shell's end may be decided either way in float.
-constexpr double margin_mm = 2e-4;
 /// float32 over some mm, k = 1 N/mm; near a fold a root moves by many times what moved it.
 constexpr double tolerance_n = 1e-4;
 

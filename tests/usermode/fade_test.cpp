@@ -13,23 +13,23 @@
 namespace phantom::test {
 namespace {
 
-using Force = std::array<std::int32_t, 3>;
+using Pull = std::array<std::int32_t, 3>;
 
-double norm(const Force& f)
+double length(const Pull& f)
 {
     return std::hypot(double(f[0]), double(f[1]), double(f[2]));
 }
 
-double apart(const Force& a, const Force& b)
+double apart(const Pull& a, const Pull& b)
 {
     return std::hypot(double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]);
 }
 
 struct Faded {
-    Force at_begin{}, later{};
+    Pull at_begin{}, later{};
 };
 
-Faded fade(const Force& from, const Force& target, const Force& later, std::uint64_t elapsed_ns,
+Faded fade(const Pull& from, const Pull& target, const Pull& later, std::uint64_t elapsed_ns,
            std::uint64_t length_ns = PHANTOM_FADE_NS)
 {
     Faded out;
@@ -39,18 +39,18 @@ Faded fade(const Force& from, const Force& target, const Force& later, std::uint
 }
 
 /// Rounding: s is known to a ns of 20 ms, a to 2^-28, and divisions drop less than a uN each.
-double rounding(const Force& f)
+double rounding(const Pull& f)
 {
-    return 4 + norm(f) * 1.2e-7;
+    return 4 + length(f) * 1.2e-7;
 }
 
 /// From nothing over uN to the limits of the border.
 class Forces {
   public:
-    Force any()
+    Pull any()
     {
         const double size = std::pow(2.0, std::uniform_real_distribution<>(0, 31.5)(random));
-        Force f{};
+        Pull f{};
         for (std::int32_t& axis : f)
             axis = static_cast<std::int32_t>(
                 std::clamp(size * std::normal_distribution<>()(random), -2147483647.0, 2147483647.0));
@@ -65,7 +65,7 @@ TEST(Fade, BeginsWhereTheForceIsAndEndsAtTheTarget)
 {
     Forces forces;
     for (int i = 0; i < 20000; ++i) {
-        const Force from = forces.any(), target = forces.any(), later = forces.any();
+        const Pull from = forces.any(), target = forces.any(), later = forces.any();
         const std::uint64_t length = 1'000'000 + std::uint64_t(forces.part() * 9'999e6);
         const Faded out = fade(from, target, later, length, length);
         ASSERT_LE(apart(out.at_begin, from), rounding(target)) << i;
@@ -77,10 +77,11 @@ TEST(Fade, IsNeverLargerThanWhatIsLeftOfTheOldForceAndTheTarget)
 {
     Forces forces;
     for (int i = 0; i < 20000; ++i) {
-        const Force from = forces.any(), target = forces.any(), later = forces.any();
+        const Pull from = forces.any(), target = forces.any(), later = forces.any();
         const double s = forces.part();
         const Faded out = fade(from, target, later, std::uint64_t((1 - s) * PHANTOM_FADE_NS));
-        ASSERT_LE(norm(out.later), norm(later) + norm(from) * s + rounding(from) + rounding(later)) << i;
+        ASSERT_LE(length(out.later), length(later) + length(from) * s + rounding(from) + rounding(later))
+            << i;
     }
 }
 
@@ -88,8 +89,8 @@ TEST(Fade, OfAForceThatComesFromNothingIsAPartOfTheTarget)
 {
     Forces forces;
     for (int i = 0; i < 20000; ++i) {
-        const Force target = forces.any(), later = forces.any();
-        if (target == Force{})
+        const Pull target = forces.any(), later = forces.any();
+        if (target == Pull{})
             continue; // nothing to fade to
         const double part = forces.part();
         const Faded out = fade({}, target, later, std::uint64_t(part * PHANTOM_FADE_NS));
@@ -103,15 +104,15 @@ TEST(Fade, BetweenTwoForcesThatAreNearlyTheSameFollowsTheTarget)
 {
     Forces forces;
     for (int i = 0; i < 20000; ++i) {
-        const Force target = forces.any(), later = forces.any();
-        if (norm(target) < 1e5)
+        const Pull target = forces.any(), later = forces.any();
+        if (length(target) < 1e5)
             continue; // a uN is not little of it
-        Force from = target;
+        Pull from = target;
         for (std::int32_t& axis : from)
             axis = static_cast<std::int32_t>(axis * (1 - 0.02 * forces.part()));
         const Faded out = fade(from, target, later, std::uint64_t(forces.part() * PHANTOM_FADE_NS));
         // what they differ by: of the target along it, and as much aside
-        ASSERT_LE(apart(out.later, later), 0.021 * (norm(later) + norm(target)) + rounding(later)) << i;
+        ASSERT_LE(apart(out.later, later), 0.021 * (length(later) + length(target)) + rounding(later)) << i;
     }
 }
 
@@ -119,10 +120,10 @@ TEST(Fade, StepsByThePartOfATickWhateverTheTarget)
 {
     Forces forces;
     for (int i = 0; i < 5000; ++i) {
-        const Force from = forces.any(), target = forces.any();
-        Force last = fade(from, target, target, 0).later;
+        const Pull from = forces.any(), target = forces.any();
+        Pull last = fade(from, target, target, 0).later;
         for (std::uint64_t tick = 1; tick <= 20; ++tick) {
-            const Force now = fade(from, target, target, tick * PHANTOM_FADE_NS / 20).later;
+            const Pull now = fade(from, target, target, tick * PHANTOM_FADE_NS / 20).later;
             ASSERT_LE(apart(now, last), apart(from, target) / 20 + rounding(from) + rounding(target)) << i;
             last = now;
         }

@@ -6,8 +6,7 @@
 namespace phantom::test {
 namespace {
 
-constexpr std::int64_t mm = 1'000'000; // nm; and with k = 1 N/mm, the uN of that much depth
-constexpr double radius_un = 3e6;      // k R
+constexpr double radius_un = 3e6; // k R
 
 class Geometry : public MachineTest {
   protected:

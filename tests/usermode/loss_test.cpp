@@ -7,8 +7,6 @@
 namespace phantom::test {
 namespace {
 
-constexpr std::int64_t mm = 1'000'000;
-
 enum class Cause { left_coverage, emptied, stale, budget_cut };
 
 struct Loss {

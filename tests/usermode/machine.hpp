@@ -19,6 +19,8 @@
 
 namespace phantom::test {
 
+inline constexpr std::int64_t mm = 1'000'000; // nm; and with k = 1 N/mm, the uN of that much depth
+
 /// Memory in which "not written" shows.
 template <class T>
 T dirty()

@@ -8,8 +8,7 @@
 namespace phantom::test {
 namespace {
 
-constexpr std::int64_t mm = 1'000'000; // nm; and with k = 1 N/mm, the uN of that much depth
-constexpr double k = 1, radius = 3;    // N/mm, mm
+constexpr double k = 1, radius = 3; // N/mm, mm
 
 // ---- where it is
 

@@ -151,7 +151,7 @@ template <int K>
 Hull<K> fill_leaf(Leaf& leaf, std::span<const std::uint32_t> numbers, std::span<const Triangle> triangles,
                   const GridVertex* vertices, const LeafKernels<K>& kernels, LeafSums& sums)
 {
-    alignas(64) Corners corners;
+    alignas(64) LeafCorners corners;
     const std::size_t count = numbers.size();
     for (std::size_t lane = 0; lane < lanes; lane++) {
         const Triangle& t = triangles[numbers[lane < count ? lane : 0]];

@@ -12,7 +12,7 @@
 namespace phantom::fdh {
 
 /// The corners of a leaf's triangles in whole steps: [corner][axis][lane].
-using Corners = float[3][3][lanes];
+using LeafCorners = float[3][3][lanes];
 
 /// What making a leaf tells about it.
 template <int K>
@@ -26,7 +26,7 @@ struct MadeLeaf {
 template <int K>
 struct LeafKernels {
     /// Fills in everything but the numbers of the triangles.
-    void (*make)(const Corners& corners, Leaf& leaf, MadeLeaf<K>& made);
+    void (*make)(const LeafCorners& corners, Leaf& leaf, MadeLeaf<K>& made);
 };
 
 template <int K>

@@ -59,7 +59,7 @@ struct LeafMaker : LaneMath<I> {
     }
 
     template <std::size_t Direction>
-    static void bound(const Corners& corners, MadeLeaf<K>& made)
+    static void bound(const LeafCorners& corners, MadeLeaf<K>& made)
     {
         V low = S::set(__builtin_inff()), high = S::set(-__builtin_inff());
         for (int lane = 0; lane < lanes; lane += S::width)
@@ -72,12 +72,12 @@ struct LeafMaker : LaneMath<I> {
         made.high[Direction] = S::highest(high);
     }
     template <std::size_t... Directions>
-    static void bound_all(const Corners& corners, MadeLeaf<K>& made, Indices<Directions...>)
+    static void bound_all(const LeafCorners& corners, MadeLeaf<K>& made, Indices<Directions...>)
     {
         (bound<Directions>(corners, made), ...);
     }
 
-    static void make(const Corners& corners, Leaf& leaf, MadeLeaf<K>& made)
+    static void make(const LeafCorners& corners, Leaf& leaf, MadeLeaf<K>& made)
     {
         made.needles = 0;
         V longest2 = S::set(0);

@@ -14,8 +14,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 std::string refusal(const Mesh& mesh)
 {
     try {

@@ -11,8 +11,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 void expect_same(Nearest expected, Nearest found)
 {
     expected.sort();

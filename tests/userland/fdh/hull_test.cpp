@@ -5,6 +5,7 @@
 #include "fdh/build.hpp"
 #include "fdh/pose.hpp"
 #include "oracle.hpp"
+#include "poses.hpp"
 
 namespace phantom::fdh::test {
 
@@ -16,18 +17,6 @@ class HullTest : public testing::Test {
 using Hulls = testing::Types<std::integral_constant<int, 6>, std::integral_constant<int, 14>,
                              std::integral_constant<int, 18>, std::integral_constant<int, 26>>;
 TYPED_TEST_SUITE(HullTest, Hulls);
-
-Pose random_pose(double reach, std::mt19937_64& random)
-{
-    std::normal_distribution<double> normal;
-    double w = normal(random), x = normal(random), y = normal(random), z = normal(random);
-    const double length = std::sqrt(w * w + x * x + y * y + z * z);
-    w /= length, x /= length, y /= length, z /= length;
-    return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
-             1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
-             1 - 2 * (x * x + y * y)},
-            {reach * normal(random), reach * normal(random), reach * normal(random)}};
-}
 
 } // namespace
 

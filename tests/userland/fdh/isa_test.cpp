@@ -10,8 +10,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 template <int K>
 void expect_same_bits(Isa isa, const Mesh& mesh)
 {

@@ -2,6 +2,7 @@
 // Meshes to search: generated, or read from an OBJ file that may not be there.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <random>
 #include <string>
@@ -10,6 +11,8 @@
 #include "fdh/hull.hpp"
 
 namespace phantom::fdh::test {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Mesh {
     std::vector<Point> vertices;

@@ -11,8 +11,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 template <class K>
 class NearestTest : public testing::Test {
   public:

@@ -12,8 +12,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 Mesh box(double x, double y, double z)
 {
     Mesh mesh;
@@ -28,7 +26,7 @@ Mesh box(double x, double y, double z)
 }
 
 template <int K>
-struct Scene {
+struct PairScene {
     SceneTree<K> tree;
     std::vector<Mesh> meshes;
 
@@ -103,7 +101,7 @@ TYPED_TEST_SUITE(PairsTest, Hulls);
 TYPED_TEST(PairsTest, NoneIsMissedWhileObjectsMove)
 {
     std::mt19937_64 random(41);
-    Scene<TypeParam::value> scene;
+    PairScene<TypeParam::value> scene;
     for (int i = 0; i < 9; i++)
         scene.add(soup(3, 8, random), random_pose(20, random));
     for (int round = 0; round < 2; round++) {
@@ -118,7 +116,7 @@ TYPED_TEST(PairsTest, PointsSegmentsAndNeedlesAreNotMissed)
 {
     std::mt19937_64 random(43);
     const Mesh faces = degenerate_faces(random);
-    Scene<TypeParam::value> scene;
+    PairScene<TypeParam::value> scene;
     for (std::size_t i = 0; i < 18; i++) {
         Mesh one;
         const Corners t = corners(faces, i);
@@ -132,7 +130,7 @@ TYPED_TEST(PairsTest, PointsSegmentsAndNeedlesAreNotMissed)
 TYPED_TEST(PairsTest, FarFromTheOriginNoneIsMissed)
 {
     std::mt19937_64 random(47);
-    Scene<TypeParam::value> scene;
+    PairScene<TypeParam::value> scene;
     for (int i = 0; i < 10; i++) {
         Pose pose = random_pose(20, random);
         pose.translation[0] += 5e9;
@@ -147,7 +145,7 @@ TYPED_TEST(PairsTest, FarFromTheOriginNoneIsMissed)
 // Where hulls touch exactly, the pair is there, and one that is a hair apart has a bound that says so.
 TYPED_TEST(PairsTest, BoxesOnAGridAreBoundExactly)
 {
-    Scene<TypeParam::value> scene;
+    PairScene<TypeParam::value> scene;
     const Mesh cube = box(1, 1, 1);
     for (int i = 0; i < 5; i++)
         scene.add(cube, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {i * (2 + 0.25 * i), 0, 0}});
@@ -169,7 +167,7 @@ TYPED_TEST(PairsTest, BoxesOnAGridAreBoundExactly)
 // In world directions two long boxes side by side, turned by 30 degrees, overlap; in their own they do not.
 TYPED_TEST(PairsTest, ObjectsAreSeenInTheirOwnFrames)
 {
-    Scene<TypeParam::value> scene;
+    PairScene<TypeParam::value> scene;
     const Mesh plank = box(50, 1, 20);
     const Pose turned = turn({0.2, 0.1, 1}, M_PI / 6, {0, 0, 0});
     Pose beside = turned;
@@ -188,7 +186,7 @@ TYPED_TEST(PairsTest, ObjectsAreSeenInTheirOwnFrames)
 
 TYPED_TEST(PairsTest, EmptyObjectsAndInvalidDistancesFindNothing)
 {
-    Scene<TypeParam::value> scene;
+    PairScene<TypeParam::value> scene;
     std::vector<ObjectPair> pairs(3);
     scene.tree.pairs(1, pairs);
     EXPECT_TRUE(pairs.empty());
@@ -239,7 +237,7 @@ TYPED_TEST(PairsTest, TrianglePairsMatchBruteForce)
 {
     constexpr int K = TypeParam::value;
     std::mt19937_64 random(151);
-    Scene<K> scene;
+    PairScene<K> scene;
     const Mesh faces = degenerate_faces(random);
     Mesh needles;
     for (std::size_t i = 0; i < 8; i++) {
@@ -291,7 +289,7 @@ TYPED_TEST(PairsTest, TrianglePairsThatTouchAreFoundAndNoneBeyondTheBound)
 {
     constexpr int K = TypeParam::value;
     std::mt19937_64 random(157);
-    Scene<K> scene;
+    PairScene<K> scene;
     std::vector<TrianglePair> found;
     Mesh corner = soup(1, 10, random);
     for (std::uint32_t i = 0; i < 60; i++) {
@@ -304,7 +302,7 @@ TYPED_TEST(PairsTest, TrianglePairsThatTouchAreFoundAndNoneBeyondTheBound)
         scene.tree.triangle_pairs(0, i, 0, found);
         EXPECT_EQ(found.size(), 1u) << i;
     }
-    Scene<K> sheets;
+    PairScene<K> sheets;
     sheets.add(flat_grid(6), {});
     sheets.add(flat_grid(5), {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.3, 0.2, 2}});
     sheets.tree.update();

@@ -12,8 +12,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A mesh in its world, found under each kind of hull.
 struct World {
     Mesh mesh; ///< in its own frame

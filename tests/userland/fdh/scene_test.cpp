@@ -10,8 +10,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A scene and the same triangles in world coordinates.
 template <int K>
 struct Scene {

@@ -14,8 +14,6 @@ namespace phantom::fdh::test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 double magnitude(const Corners& t, const Segment& s)
 {
     double most = 0;
