@@ -270,7 +270,7 @@ void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<d
         if (s > 0 && surfaces_[s - 1][0] == object)
             continue;
         const scene::Object& owner = scene_.objects[object];
-        const double radius_mm = scene_.materials[owner.material].radius_mm;
+        const double radius_mm = scene_.reach_mm(owner.material);
         near_rims_.clear();
         owner.rims.within(owner.mesh, to_object(owner.pose, centre_mm), coverage_mm + radius_mm, near_rims_);
         for (const mesh::Rims::Near& near : near_rims_) {

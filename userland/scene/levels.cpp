@@ -31,7 +31,7 @@ std::vector<Surface> chain_of(const Scene& scene, const Object& object, const fd
                               const LevelOptions& options)
 {
     std::vector<Surface> out;
-    const double radius_mm = scene.materials[object.material].radius_mm;
+    const double radius_mm = scene.reach_mm(object.material);
     const double needed_mm = reach_needed_mm(radius_mm, options.speed_mm_s, options.delay_s);
     const auto enough = [&](const Surface& surface) {
         Object at = object;

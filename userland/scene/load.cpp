@@ -129,8 +129,8 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
     return success();
 }
 
-Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
-                           const LoadOptions& options, Scene& scene)
+Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const LoadOptions& options,
+                           Scene& scene)
 {
     Object object;
     object.name = entry.name;
@@ -139,7 +139,8 @@ Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, cons
     object.material = entry.material;
     object.motion = entry.motion;
     object.deformation = entry.deformation;
-    const CacheRequest request{entry.mesh, prepare_options(file, entry, options), material.radius_mm};
+    const CacheRequest request{entry.mesh, prepare_options(file, entry, options),
+                               scene.reach_mm(entry.material)};
     const Status status = options.cache && is_cacheable(entry.mesh)
                               ? fill_cached(entry, request, *options.cache, object, scene)
                               : fill(entry, request.prepare, request.reach_mm, object);
@@ -176,7 +177,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     }
     std::uint64_t first_face = 0, first_vertex = 0;
     for (const ObjectEntry& entry : entries->objects) {
-        auto object = make_object(*entries, entry, scene.materials[entry.material], options, scene);
+        auto object = make_object(*entries, entry, options, scene);
         if (!object)
             return object.error();
         object->first_face = static_cast<std::uint32_t>(first_face);

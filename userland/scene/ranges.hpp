@@ -25,6 +25,12 @@ inline constexpr Range viscosity_ns_m{0.0, 20.0, "0 ... 20 N*s/m"};
 inline constexpr Range drag_ns2_m2{0.0, 1000.0, "0 ... 1000 N*s^2/m^2"};
 // Where a medium or a guide ends. No farther, so that one which a set cannot name is out of the tip's reach.
 inline constexpr Range region_mm{0.1, 1000.0, "0.1 ... 1000 mm"};
+inline constexpr Range map_spacing_mm{0.01, 100.0, "0.01 ... 100 mm"};
+inline constexpr Range impact_gain_ns_m{0.0, 125.0, "0 ... 125 N*s/m"};
+inline constexpr Range impact_frequency_hz{10.0, 1000.0, "10 ... 1000 Hz"};
+inline constexpr Range impact_decay_ms{1.0, 500.0, "1 ... 500 ms"};
+inline constexpr Range field_scale{-1000.0, 1000.0, "-1000 ... 1000"};
+inline constexpr Range tip_radius_mm{1e-6, 50.0, "0.000001 ... 50 mm"};
 inline constexpr Range effect_stiffness_n_mm{0.001, 100.0, "0.001 ... 100 N/mm"};
 inline constexpr Range friction{0.0, 4.0, "0 ... 4"};
 inline constexpr Range stribeck_mm_s{0.0, 1000.0, "0 ... 1000 mm/s"};

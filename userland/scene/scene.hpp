@@ -31,6 +31,8 @@ struct Material {
     std::optional<Magnet> magnet{};
     std::optional<Friction> friction{};
     std::optional<Texture> texture{};
+    std::optional<HeightMap> height_map{};
+    std::optional<Impact> impact{};
 };
 
 /// What can be touched of an object: its mesh, and what was made of it. A copy shares all arrays.
@@ -89,7 +91,11 @@ struct Scene {
     /// their rims.
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
-    [[nodiscard]] double max_radius_mm() const;
+    /// Of the ball that a scene may call for as tip; else 0.
+    [[nodiscard]] double tip_radius_mm() const;
+    /// How far from the surface a contact with that material begins: its radius and the tip's.
+    [[nodiscard]] double reach_mm(std::uint32_t material) const;
+    [[nodiscard]] double max_radius_mm() const; ///< the largest reach
     /// Whether some object is of that material.
     [[nodiscard]] bool uses(std::uint32_t material) const;
     /// Names of the effects that a used material or space calls for ("damping", "guide"), and of the others.

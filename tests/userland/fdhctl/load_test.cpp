@@ -214,7 +214,8 @@ TEST_F(Load, ASetOfCommandsAnswersInJson)
     EXPECT_EQ(facts["triangles"], 2208);
     EXPECT_TRUE(facts["objects"][0]["report"]["watertight"].get<bool>());
     EXPECT_EQ(facts["effects"]["not_called_for"],
-              json::array({"damping", "magnet", "friction", "texture", "constant", "viscosity", "guide"}));
+              json::array({"damping", "magnet", "friction", "texture", "height_map", "impact", "constant",
+                           "viscosity", "guide", "field", "tip"}));
     EXPECT_GT(facts["tick"]["median_ns"].get<double>(), 0);
 
     const Outcome prepared = run({"prepare", mesh, "-o", path("out.ply"), "--fit", "50", "--json"});

@@ -75,7 +75,7 @@ TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
               "radius_mm, tube_radius_mm, chord_mm");
     EXPECT_EQ(below_object("[material.soft]\nstifness_n_mm = 1\n"),
               "a.toml:5: material.soft.stifness_n_mm: unknown key, expected stiffness_n_mm, radius_mm, "
-              "damping_ns_m, magnet, friction, texture");
+              "damping_ns_m, magnet, friction, texture, height_map, impact");
     EXPECT_EQ(below_object("[material.soft.friction]\nsliding = 1\nstatic = 1\n"),
               "a.toml:5: material.soft.friction.sliding: unknown key, expected static, dynamic, "
               "stiffness_n_mm, stribeck_mm_s");
