@@ -10,6 +10,7 @@
 #include <phantom_platform.h>
 #include "phantom_context.h"
 #include "phantom_servo.h"
+#include "phantom_touch.h"
 #include <phantom_trace.h>
 
 /* What STOP grants beyond the ramp: the slew limit's tail, and a late thread. */
@@ -54,7 +55,8 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 	servo->device = device;
 	servo->features = PHANTOM_FEATURE_MODEL_PAPER | PHANTOM_FEATURE_MODEL_PROJECTED |
 			  PHANTOM_FEATURE_PROXY_PAPER | PHANTOM_FEATURE_PROXY_CONSTRAINED |
-			  PHANTOM_FEATURE_FANS | PHANTOM_FEATURE_CROSSFADE | PHANTOM_FEATURE_RIMS;
+			  PHANTOM_FEATURE_FANS | PHANTOM_FEATURE_CROSSFADE | PHANTOM_FEATURE_RIMS |
+			  PHANTOM_FEATURE_MOVING_OBJECTS;
 	for (arith = 0; arith < PHANTOM_ARITHS; arith++) {
 		servo->ops[arith] = ops[arith];
 		if (ops[arith])
@@ -73,7 +75,7 @@ int phantom_servo_init(struct phantom_servo *servo, struct phantom_clock *clock,
 	servo->active_model = servo->model;
 	servo->job.model = phantom_model_default;
 	mutex_lock(&servo->control);
-	phantom_servo_forget_touch(servo);
+	phantom_touch_forget(servo);
 	mutex_unlock(&servo->control);
 	servo->stats.next.rate_hz = servo->rate_hz;
 	servo->stats.next.model = phantom_model_default;
@@ -119,7 +121,7 @@ static void phantom_control_reset(struct phantom_servo *servo)
 {
 	phantom_safety_begin(&servo->safety, &servo->limits);
 	phantom_fade_reset(&servo->fade);
-	phantom_servo_forget_touch(servo);
+	phantom_touch_forget(servo);
 	phantom_servo_set_clock(servo);
 	servo->reached = false;
 	servo->warned = false;
@@ -350,7 +352,7 @@ void phantom_servo_forget(struct phantom_servo *servo)
 	if (servo->active)
 		phantom_set_release(servo->active);
 	servo->active = NULL;
-	phantom_servo_forget_touch(servo);
+	phantom_touch_forget(servo);
 	next->set_id = 0;
 	next->set_patches = 0;
 	next->set_time_ns = 0;

@@ -7,20 +7,12 @@
  *     take the waiting set, the model, a wish to stop or to clear a fault
  *     tip      <- device                      an error is a fault
  *     velocity <- low pass of tip             too fast is a fault
- *     covered  <- integers: does the set promise all that contact needs here?
- *     target   <- covered and fresh: float section (contact, proxy, effects); else 0
+ *     target   <- phantom_touch.c: where the set covers the tip and is fresh, contact, proxy and
+ *                 effects in every frame, added up; else 0
  *     target   <- blend, where covered, fresh, model or geometry changed
  *     force    <- safety: clamp, ramp, slew; any fault: 0
  *     device   <- force                       an error is a fault
  *     record, status page, wake-ups
- *
- * LOSS OF COVERAGE. Contact is evaluated only where the promise of the set reaches. While it does
- * not, the state (inside, proxy, tip of the last evaluation) is kept for PHANTOM_MEMORY_NS: when
- * coverage comes back in time, the path from that last tip to the present one is searched for a
- * crossing of the surface, so a tip that went through meanwhile is found inside and not let fall.
- * After that the state is dropped, inside = 0: better no force than a full one at a depth nobody
- * felt coming. A fast tip may start its path outside the new set's coverage; a crossing that the
- * set does know is a crossing all the same.
  *
  * CONTEXT RULES stand in phantom_servo.h. Here: everything is the servo thread's but prepare(),
  * which is a submitter's, and what says "run state". Float sections run with preemption off: no
@@ -28,16 +20,13 @@
  * float/ is called there.
  */
 #include <phantom_platform.h>
-#include "phantom_carry.h"
 #include "phantom_context.h"
 #include "phantom_servo.h"
+#include "phantom_touch.h"
 #include <phantom_trace.h>
 
 /* Readers of records are woken at most this often: at 10 kHz ten records cost one wake-up. */
 #define PHANTOM_WAKE_NS 1000000
-
-/* Where the geometry changes, surfaces that ought to be the same may lie this far apart. */
-#define PHANTOM_CARRY_NM 10000
 
 static u64 phantom_servo_now(const struct phantom_servo *servo)
 {
@@ -110,28 +99,32 @@ static void phantom_servo_float_drive(struct phantom_servo *servo, struct phanto
 	phantom_servo_close_section(servo, begin);
 }
 
-void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot)
+/* One float section for each PHANTOM_FLOAT_PREPARE_MAX patches. */
+static void phantom_servo_prepare_frame(struct phantom_servo *servo, struct phantom_slot *slot,
+					u32 frame)
 {
 	const struct phantom_set_copy *copy = &servo->sets.copy;
+	const struct phantom_part *part = &copy->part[frame];
+	struct phantom_effects effects;
 	struct phantom_float_prepare prepare = {
-		.set = slot->floats,
-		.patches = copy->patches,
+		.set = slot->frame[frame].floats,
+		.patches = copy->sorted + part->first,
 		.materials = copy->materials,
-		.patch_count = slot->patch_count,
-		.face_count = copy->face_count,
-		.rim_count = copy->rim_count,
+		.patch_count = part->patch_count,
+		.face_count = part->face_count,
+		.rim_count = part->rim_count,
 		.material_count = copy->header.material_count,
-		.effects = copy->header.effect_bytes ? &copy->effects : NULL,
+		.effects = copy->header.effect_bytes ? &effects : NULL,
 	};
 
-	phantom_context_submitter(&servo->sets);
-	memcpy(prepare.origin_nm, slot->origin_nm, sizeof(prepare.origin_nm));
+	phantom_set_effects(copy, frame, &effects);
+	memcpy(prepare.origin_nm, slot->frame[frame].origin_nm, sizeof(prepare.origin_nm));
 	do {
 		u64 begin = phantom_servo_now(servo);
 		u64 length;
 
 		prepare.count =
-			min_t(u32, slot->patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);
+			min_t(u32, part->patch_count - prepare.first, PHANTOM_FLOAT_PREPARE_MAX);
 		if (!slot->ops->integer) {
 			kernel_fpu_begin();
 			phantom_context_section();
@@ -143,18 +136,22 @@ void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slo
 		if (length > READ_ONCE(servo->prepare_max_ns))
 			WRITE_ONCE(servo->prepare_max_ns, (u32)length);
 		prepare.first += prepare.count;
-	} while (prepare.first < slot->patch_count);
-	slot->refused = prepare.refused;
+	} while (prepare.first < part->patch_count);
+	slot->refused += prepare.refused;
 }
 
-/* ---- contact ------------------------------------------------------------- */
-
-void phantom_servo_forget_touch(struct phantom_servo *servo)
+void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot)
 {
-	phantom_context_run(servo);
-	memset(&servo->touch, 0, sizeof(servo->touch));
-	servo->touch.proxy_face = PHANTOM_PATCH_NONE;
+	u32 frame;
+
+	phantom_context_submitter(&servo->sets);
+	phantom_servo_prepare_frame(servo, slot, 0);
+	for (frame = 1; frame < slot->frame_count; frame++)
+		if (slot->frame[frame].patch_count)
+			phantom_servo_prepare_frame(servo, slot, frame);
 }
+
+/* ---- what comes to the tick from outside --------------------------------- */
 
 static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_pass *pass)
 {
@@ -166,20 +163,24 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 		return;
 	if (before) {
 		/* a scene that became empty here is no mere swap */
-		if (before->patch_count && !slot->patch_count)
+		if (before->frame[0].patch_count && !slot->frame[0].patch_count)
 			pass->blend_ns = PHANTOM_FADE_NS;
 		/* another feel */
 		if (before->effect_print != slot->effect_print)
 			pass->blend_ns = PHANTOM_FADE_NS;
-		if (phantom_set_reshaped(before, slot))
-			pass->outgoing = before; /* phantom_servo_depart() releases it */
+	}
+	if (slot->frame_count > 1 || (before && before->frame_count > 1))
+		phantom_bodies_swap(servo, before, slot, pass);
+	if (before) {
+		pass->reshaped = phantom_set_reshaped(before, slot);
+		if (pass->reshaped)
+			pass->outgoing = before; /* phantom_touch_contact() releases it */
 		else
 			phantom_set_release(before);
 	}
 	servo->active = slot;
 	servo->warned = false;
-	if (!(slot->effects & PHANTOM_EFFECT_FRICTION))
-		servo->touch.stuck = false;
+	phantom_touch_settle(servo);
 	next->set_time_ns = pass->now_ns;
 	next->isa = slot->ops->isa;
 	next->set_id = slot->id;
@@ -188,7 +189,8 @@ static void phantom_servo_take_set(struct phantom_servo *servo, struct phantom_p
 	next->set_level_error_nm = slot->level_error_nm;
 	next->sets++;
 	next->refused += slot->refused;
-	trace_phantom_set(servo->unit, slot->id, slot->patch_count, slot->refused, slot->radius_nm);
+	trace_phantom_set(servo->unit, slot->id, slot->patch_count, slot->refused,
+			  slot->frame[0].radius_nm);
 }
 
 static void phantom_servo_take_model(struct phantom_servo *servo, struct phantom_pass *pass)
@@ -203,171 +205,7 @@ static void phantom_servo_take_model(struct phantom_servo *servo, struct phantom
 	pass->blend_ns = PHANTOM_FADE_NS;
 	if (servo->job.model.model == PHANTOM_MODEL_OFF ||
 	    servo->job.model.proxy == PHANTOM_PROXY_OFF)
-		phantom_servo_forget_touch(servo);
-}
-
-/* Fills in the job's positions. False: the set in use does not cover what contact needs. */
-static bool phantom_servo_place(struct phantom_servo *servo, const struct phantom_pass *pass)
-{
-	const struct phantom_slot *slot = servo->active;
-	struct phantom_float_job *job = &servo->job;
-	struct phantom_touch *touch = &servo->touch;
-
-	if (!slot || !phantom_set_relative(slot, pass->tip_nm, job->tip_nm))
-		return false;
-	job->path_valid =
-		touch->valid && phantom_set_relative(slot, touch->previous_nm, job->previous_nm);
-	if (!job->path_valid)
-		memcpy(job->previous_nm, job->tip_nm, sizeof(job->previous_nm));
-	job->inside = touch->inside;
-	job->proxy_face = touch->proxy_face;
-	if (!touch->inside) {
-		memcpy(job->proxy_nm, job->tip_nm, sizeof(job->proxy_nm));
-		return phantom_set_covers(slot, job->tip_nm, slot->reach_nm);
-	}
-	return phantom_set_relative(slot, touch->proxy_nm, job->proxy_nm) &&
-	       phantom_set_covers(slot, job->proxy_nm, 0) &&
-	       phantom_set_covers(slot, job->tip_nm, 0);
-}
-
-/* What effects remember goes into the job in the set's coordinates, and comes back out of it. */
-static void phantom_servo_give_stick(struct phantom_servo *servo, const struct phantom_pass *pass)
-{
-	struct phantom_float_job *job = &servo->job;
-	struct phantom_touch *touch = &servo->touch;
-
-	job->period_ns = pass->period_ns;
-	job->stick.coefficient_q24 = touch->coefficient_q24;
-	job->stick.held = touch->stuck && phantom_set_relative(servo->active, touch->anchor_nm,
-							       job->stick.anchor_nm);
-}
-
-static void phantom_servo_take_stick(struct phantom_servo *servo)
-{
-	const struct phantom_stick *stick = &servo->job.stick_next;
-	struct phantom_touch *touch = &servo->touch;
-	int axis;
-
-	touch->stuck = stick->held;
-	touch->coefficient_q24 = stick->coefficient_q24;
-	for (axis = 0; axis < 3; axis++)
-		touch->anchor_nm[axis] = servo->active->origin_nm[axis] + stick->anchor_nm[axis];
-}
-
-static void phantom_servo_evaluate(struct phantom_servo *servo, struct phantom_pass *pass)
-{
-	const struct phantom_slot *slot = servo->active;
-	struct phantom_float_job *job = &servo->job;
-	struct phantom_touch *touch = &servo->touch;
-	int axis;
-
-	if (!slot->patch_count) {
-		touch->inside = false;
-		job->inside = 0;
-		if (!(slot->effects & PHANTOM_EFFECTS_SPACE))
-			return;
-	}
-	job->set = slot->floats;
-	job->effects = slot->effects;
-	memcpy(job->centre_nm, slot->centre_nm, sizeof(job->centre_nm));
-	job->radius_nm = slot->radius_nm;
-	for (axis = 0; axis < 3; axis++)
-		job->velocity_nm_s[axis] =
-			clamp_t(s64, servo->safety.velocity_nm_s[axis], -S32_MAX, S32_MAX);
-	if (slot->effects & ~PHANTOM_EFFECT_DAMPING)
-		phantom_servo_give_stick(servo, pass);
-	if (touch->carry_nm && touch->valid)
-		phantom_carry(servo);
-	else
-		phantom_servo_float_tick(servo, slot->ops);
-
-	touch->carry_nm = 0;
-	touch->moved_nm = 0;
-	touch->inside = job->inside;
-	touch->proxy_face = job->inside ? job->proxy_face : PHANTOM_PATCH_NONE;
-	for (axis = 0; axis < 3; axis++)
-		touch->proxy_nm[axis] = slot->origin_nm[axis] + job->proxy_nm[axis];
-	if (slot->effects & PHANTOM_EFFECT_FRICTION)
-		phantom_servo_take_stick(servo);
-	memcpy(touch->normal_q30, job->normal_q30, sizeof(touch->normal_q30));
-	memcpy(pass->target_un, job->force_un, sizeof(pass->target_un));
-	memcpy(pass->normal_q30, job->normal_q30, sizeof(pass->normal_q30));
-	pass->contacts = job->contacts;
-	if (job->saturated) {
-		pass->flags |= PHANTOM_TICK_SATURATED;
-		servo->stats.next.saturated += job->saturated;
-	}
-	if (job->invalid) {
-		memset(pass->target_un, 0, sizeof(pass->target_un));
-		phantom_servo_forget_touch(servo);
-		phantom_safety_raise(&servo->safety, PHANTOM_FAULT_NUMERIC);
-	}
-}
-
-/* Evaluates contact where it is covered, and remembers where that was. */
-static void phantom_servo_feel(struct phantom_servo *servo, struct phantom_pass *pass)
-{
-	struct phantom_touch *touch = &servo->touch;
-
-	phantom_servo_evaluate(servo, pass);
-	memcpy(touch->previous_nm, pass->tip_nm, sizeof(touch->previous_nm));
-	touch->evaluated_ns = pass->now_ns;
-	touch->valid = true;
-}
-
-/* A last tick on the set that goes, nothing of which is sent. */
-static void phantom_servo_depart(struct phantom_servo *servo, struct phantom_pass *pass)
-{
-	struct phantom_touch *touch = &servo->touch;
-	struct phantom_slot *slot = servo->active, *outgoing = pass->outgoing;
-	/* along the normal it is somewhat farther than to the nearest point */
-	u64 apart = 2 * ((u64)outgoing->level_error_nm + slot->level_error_nm) + PHANTOM_CARRY_NM;
-	s32 unsent_un[3];
-
-	servo->active = outgoing;
-	if (servo->reached && phantom_servo_place(servo, pass)) {
-		phantom_servo_feel(servo, pass);
-		phantom_fade_blend(&servo->fade, pass->target_un, pass->now_ns, unsent_un);
-		memset(pass->target_un, 0, sizeof(pass->target_un));
-		memset(pass->normal_q30, 0, sizeof(pass->normal_q30));
-		pass->contacts = 0;
-	}
-	servo->active = slot;
-	touch->carry_nm = max_t(u32, touch->carry_nm, min_t(u64, apart, PHANTOM_COVERAGE_MAX_NM));
-	touch->moved_nm = max_t(u32, touch->moved_nm, touch->carry_nm);
-	if (outgoing->level == slot->level)
-		touch->moved_nm = max_t(u32, touch->moved_nm, slot->reach_nm);
-	if (!pass->blend_ns)
-		pass->blend_ns = servo->crossfade_ns;
-	phantom_set_release(outgoing);
-}
-
-/* The force that contact asks for at the pass's tip, or zero where nothing is promised. */
-static void phantom_servo_contact(struct phantom_servo *servo, struct phantom_pass *pass)
-{
-	struct phantom_touch *touch = &servo->touch;
-	bool off = servo->job.model.model == PHANTOM_MODEL_OFF;
-	bool reached;
-
-	if (pass->outgoing)
-		phantom_servo_depart(servo, pass);
-	if (!phantom_servo_place(servo, pass))
-		pass->flags |= PHANTOM_TICK_UNCOVERED;
-	if (servo->active && pass->now_ns - servo->stats.next.set_time_ns > servo->stale_ns)
-		pass->flags |= PHANTOM_TICK_STALE;
-	reached = !(pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) && !off &&
-		  !servo->safety.overloaded;
-	if (reached)
-		phantom_servo_feel(servo, pass);
-	else if (touch->valid && pass->now_ns - touch->evaluated_ns > PHANTOM_MEMORY_NS)
-		phantom_servo_forget_touch(servo);
-	if (reached != servo->reached)
-		pass->blend_ns = PHANTOM_FADE_NS;
-	servo->reached = reached;
-	if (touch->inside)
-		pass->flags |= PHANTOM_TICK_INSIDE;
-	memcpy(pass->proxy_nm, touch->inside ? touch->proxy_nm : pass->tip_nm,
-	       sizeof(pass->proxy_nm));
+		phantom_touch_forget(servo);
 }
 
 /* ---- the rest of the tick ------------------------------------------------ */
@@ -507,9 +345,6 @@ static void phantom_servo_publish(struct phantom_servo *servo, const struct phan
 /* True when POLLPRI has something new to tell: phantom_abi.h, POLL. */
 static bool phantom_servo_needs_set(struct phantom_servo *servo, const struct phantom_pass *pass)
 {
-	const struct phantom_slot *slot = servo->active;
-	u32 half;
-
 	if (pass->flags & (PHANTOM_TICK_UNCOVERED | PHANTOM_TICK_STALE)) {
 		if (!servo->warned || pass->now_ns - servo->reminded_ns >= PHANTOM_REMIND_NS) {
 			servo->warned = true;
@@ -518,10 +353,7 @@ static bool phantom_servo_needs_set(struct phantom_servo *servo, const struct ph
 		}
 		return false;
 	}
-	if (servo->warned || servo->touch.inside)
-		return false;
-	half = slot->reach_nm + (slot->radius_nm - slot->reach_nm) / 2;
-	if (phantom_set_covers(slot, servo->job.tip_nm, half))
+	if (servo->warned || !phantom_touch_running_out(servo, pass))
 		return false;
 	servo->warned = true;
 	servo->reminded_ns = pass->now_ns;
@@ -553,7 +385,8 @@ static void phantom_servo_tell(struct phantom_servo *servo, const struct phantom
 		wake_up_interruptible(&servo->wait);
 }
 
-static void phantom_servo_tick(struct phantom_servo *servo, u64 now_ns, u64 period_ns)
+static __always_inline void phantom_servo_tick(struct phantom_servo *servo, u64 now_ns,
+					       u64 period_ns)
 {
 	struct phantom_pass pass = {
 		.now_ns = now_ns,
@@ -568,7 +401,7 @@ static void phantom_servo_tick(struct phantom_servo *servo, u64 now_ns, u64 peri
 	phantom_safety_watch(&servo->safety, now_ns - servo->next_ns, pass.elapsed_ns,
 			     servo->busy_ns, period_ns);
 	phantom_servo_sense(servo, &pass);
-	phantom_servo_contact(servo, &pass);
+	phantom_touch_contact(servo, &pass);
 	phantom_servo_act(servo, &pass);
 	phantom_servo_tell(servo, &pass);
 	phantom_servo_publish(servo, &pass);

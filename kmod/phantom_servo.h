@@ -36,27 +36,12 @@
 #include "device/phantom_device.h"
 #include "float/phantom_float.h"
 #include "phantom_abi.h"
+#include "phantom_body.h"
 #include "phantom_clock.h"
 #include "phantom_fade.h"
 #include "phantom_safety.h"
 #include "phantom_set.h"
 #include "phantom_stats.h"
-
-/* What contact remembers from tick to tick, in world coordinates: no swap of sets moves it. */
-struct phantom_touch {
-	bool valid; /* previous_nm was evaluated not longer than PHANTOM_MEMORY_NS ago */
-	bool inside;
-	s64 previous_nm[3]; /* the tip where contact was evaluated last */
-	s64 proxy_nm[3]; /* while inside */
-	u32 proxy_face;
-	s32 normal_q30[3]; /* of the contact there; zero without one */
-	u32 carry_nm; /* the geometry has changed since, by about that much; 0 = it has not */
-	u32 moved_nm; /* and may have moved by that much */
-	bool stuck; /* friction holds a stick point: */
-	u32 coefficient_q24; /* struct phantom_stick */
-	s64 anchor_nm[3];
-	u64 evaluated_ns; /* when */
-};
 
 /* What a tick finds out on its way. */
 struct phantom_pass {
@@ -73,6 +58,10 @@ struct phantom_pass {
 	u32 flags; /* PHANTOM_TICK_... */
 	u64 blend_ns; /* something changed that needs a fade of that length; 0 = nothing */
 	struct phantom_slot *outgoing; /* the set before, of another geometry; else NULL */
+	u32 reshaped; /* the frames in which it was another: phantom_set_reshaped() */
+	u32 low; /* frames in which the tip outside has used up half of the coverage's slack */
+	u64 most; /* the largest force of a frame, squared, and the body that it is of: */
+	u32 leader;
 };
 
 struct phantom_servo {
@@ -121,7 +110,7 @@ struct phantom_servo {
 	/* run */
 	struct phantom_safety safety;
 	struct phantom_fade fade;
-	struct phantom_touch touch;
+	struct phantom_body body[PHANTOM_BODIES];
 	struct phantom_slot *active; /* the set in use */
 	u64 active_model; /* packed */
 	u64 stale_ns;
@@ -200,8 +189,6 @@ static inline void phantom_model_unpack(u64 packed, struct phantom_model *model)
 void phantom_servo_prepare(struct phantom_servo *servo, struct phantom_slot *slot);
 /* The contact that the job asks for, in as many float sections as it takes. Servo thread. */
 void phantom_servo_float_tick(struct phantom_servo *servo, const struct phantom_float_ops *ops);
-/* Run state. */
-void phantom_servo_forget_touch(struct phantom_servo *servo);
 /* Time begins now, the first tick comes one period later. Run state. */
 void phantom_servo_set_clock(struct phantom_servo *servo);
 

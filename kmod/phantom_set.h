@@ -13,6 +13,9 @@
  * by a release store and is picked by an acquire load. In use, waiting and being filled makes
  * three; the fourth lets a submitter work while the servo still holds an outgoing set. Submitters
  * are serialised by a mutex of their own.
+ *
+ * A set has FRAMES: the scene's with all that rests, and one for each object that moves. Each has
+ * patches, coverage and float data of its own; outside this unit a frame is all that contact needs.
  */
 #ifndef PHANTOM_SET_H
 #define PHANTOM_SET_H
@@ -20,6 +23,7 @@
 #include <phantom_platform.h>
 #include "phantom_abi.h"
 #include "float/phantom_float.h"
+#include "phantom_motion.h"
 
 #define PHANTOM_SLOTS 4
 
@@ -38,16 +42,28 @@
  */
 #define PHANTOM_RELATIVE_MAX_NM (S32_MAX - PHANTOM_COORDINATE_MAX_NM)
 
+struct phantom_frame {
+	s64 origin_nm[3]; /* in the frame */
+	s32 centre_nm[3]; /* of the coverage, from the origin; as is radius_nm: */
+	u32 radius_nm;
+	u32 patch_count;
+	u32 effects;
+	struct phantom_float_set *floats; /* NULL: never had patches or effects */
+	u32 capacity; /* patches that floats has room for, as the slot's ops lays them out */
+	u32 effect_room; /* and bytes of tables */
+	u32 object; /* number of what moves; not of frame 0 */
+	struct phantom_motion motion;
+};
+
 struct phantom_slot {
 	u32 holder; /* PHANTOM_SLOT_FREE or _HELD, release/acquire */
 	/* What follows is the holder's. */
 	u64 id;
-	s64 origin_nm[3];
-	s32 centre_nm[3];
-	u32 radius_nm;
 	u32 reach_nm; /* largest contact radius among its materials */
-	u32 patch_count;
-	u32 effects;
+	u32 patch_count; /* of all frames */
+	u32 frame_count;
+	struct phantom_frame frame[PHANTOM_FRAMES];
+	u32 body[PHANTOM_FRAMES]; /* the servo's: phantom_body.h */
 	u64 effect_print; /* of effects and tables, damping aside: the same, or another feel */
 	u32 level;
 	u32 level_error_nm;
@@ -55,12 +71,18 @@ struct phantom_slot {
 	u32 object_count;
 	u32 object[PHANTOM_OBJECTS_MAX];
 	u32 revision[PHANTOM_OBJECTS_MAX];
-	const struct phantom_float_ops *ops; /* which prepared `floats`, and alone can use it */
-	struct phantom_float_set *floats;
-	u32 capacity; /* patches that floats has room for, as ops lays them out */
-	u32 effect_room; /* and bytes of effects */
-	u64 *tables; /* of effects, as they were submitted; the float set refers to them */
+	u32 object_frame[PHANTOM_OBJECTS_MAX];
+	const struct phantom_float_ops *ops; /* which prepared the floats, and alone can use them */
+	u64 *tables; /* of effects, as they were submitted; the float sets refer to them */
 	u32 table_room; /* bytes */
+};
+
+/* Where a frame's patches are in the copy. */
+struct phantom_part {
+	u32 first;
+	u32 patch_count;
+	u32 face_count;
+	u32 rim_count;
 };
 
 /* The caller's arrays, copied before anything is believed. The submitter's. */
@@ -72,6 +94,12 @@ struct phantom_set_copy {
 	u32 table_room; /* bytes */
 	struct phantom_patch *patches;
 	u32 capacity; /* of patches */
+	/* by phantom_set_split(): the patches frame by frame */
+	const struct phantom_patch *sorted;
+	struct phantom_part part[PHANTOM_FRAMES];
+	struct phantom_patch
+		*room; /* for sorted, and for where each patch has gone; NULL until asked for */
+	u32 room_capacity;
 	/* by phantom_set_check_arrays() */
 	u32 face_count; /* patches of kind FACE: they come first */
 	u32 rim_count; /* patches of kind RIM: they come last */
@@ -121,6 +149,16 @@ int phantom_set_check_header(const struct phantom_set *header, u64 last_id, u32 
 int phantom_set_check_arrays(struct phantom_set_copy *copy);
 /* A vector of unit length? */
 bool phantom_check_unit(const s32 vector_q30[3]);
+/*
+ * phantom_set_split.c: patches frame by frame, with the neighbours' places in their frame. The copy is
+ * checked. 0 or -ENOMEM.
+ */
+int phantom_set_split(struct phantom_set_copy *copy);
+/* Bytes of room for each patch of room_capacity. */
+#define PHANTOM_SPLIT_BYTES (sizeof(struct phantom_patch) + sizeof(u32))
+/* The tables that a frame's float data is made with: those of space are the scene's alone. */
+void phantom_set_effects(const struct phantom_set_copy *copy, u32 frame,
+			 struct phantom_effects *effects);
 /* phantom_effects_check.c: the same for the tables; materials are checked before. Finds the tables. */
 int phantom_effects_check(struct phantom_set_copy *copy);
 
@@ -130,12 +168,15 @@ int phantom_effects_check(struct phantom_set_copy *copy);
 struct phantom_slot *phantom_set_take(struct phantom_sets *sets);
 void phantom_set_release(struct phantom_slot *slot);
 
-/* True when the two disagree about an object's revision, or are of different levels of detail. */
-bool phantom_set_reshaped(const struct phantom_slot *before, const struct phantom_slot *after);
-/* `position` relative to the slot's origin; false when it does not fit: it is not covered. */
-bool phantom_set_relative(const struct phantom_slot *slot, const s64 position_nm[3],
-			  s32 relative_nm[3]);
+/*
+ * The frames of `after`, one bit each, that have another geometry than before: another revision of an
+ * object, or another level of detail.
+ */
+u32 phantom_set_reshaped(const struct phantom_slot *before, const struct phantom_slot *after);
+/* A position in the frame relative to its origin; false when it does not fit: it is not covered. */
+bool phantom_frame_relative(const struct phantom_frame *frame, const s64 position_nm[3],
+			    s32 relative_nm[3]);
 /* True when the set promises the whole ball of that radius round a point relative to the origin. */
-bool phantom_set_covers(const struct phantom_slot *slot, const s32 point_nm[3], u32 ball_nm);
+bool phantom_frame_covers(const struct phantom_frame *frame, const s32 point_nm[3], u32 ball_nm);
 
 #endif /* PHANTOM_SET_H */

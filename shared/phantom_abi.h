@@ -172,9 +172,10 @@
  *                          that rests with a pose that is not the identity, a velocity or an origin,
  *                          more than PHANTOM_MOVING_MAX that move, one that turns faster than
  *                          PHANTOM_OBJECT_TURN_MAX_URAD_S, its origin beyond +-PHANTOM_OBJECT_REACH_NM or
- *                          its translation beyond PHANTOM_POSITION_MAX_NM, a face after a fan patch, a face or fan after a
- *                          rim, a fan or rim whose corners do not coincide as its kind says, or
- *                          that has a face number or neighbours, a rim of surface 0, a
+ *                          its translation beyond PHANTOM_POSITION_MAX_NM, a face after a fan patch,
+ *                          a face or fan after a rim, a fan or rim whose corners do not coincide as
+ *                          its kind says, or that has a face number or neighbours, a rim of surface
+ *                          0, a
  *                          neighbour that is no face or in another frame, an object number twice,
  *                          reserved not zero, radius 0 in a material, vertices or centre
  *                          beyond +-1 m of the origin, the origin beyond
@@ -456,8 +457,8 @@ struct phantom_friction {
 
 /*
  * PHANTOM_EFFECT_TEXTURE: two gratings, added. A grating is a wave in the scene's space, or in that of
- * the moving object, felt where the surface cuts it: amplitude_nm sin(2 pi wave . position). Each amplitude_nm times the sum of its
- * |wave_per_km|, both added up, is at most PHANTOM_WAVE_SLOPE_MAX.
+ * the moving object, felt where the surface cuts it: amplitude_nm sin(2 pi wave . position). Each
+ * amplitude_nm times the sum of its |wave_per_km|, both added up, is at most PHANTOM_WAVE_SLOPE_MAX.
  */
 struct phantom_texture {
 	__u32 amplitude_nm[2]; /* 0 = no such grating; its wave is then zero */
@@ -481,7 +482,8 @@ struct phantom_height_map {
 
 /*
  * PHANTOM_EFFECT_IMPACT: where contact begins, the surface rings: at an approach speed v with
- * min(gain v, force_un) exp(-t / decay) sin(2 pi frequency t).
+ * min(gain v, force_un) exp(-t / decay) sin(2 pi frequency t), along the normal of that moment. Where
+ * contact ends it fades within 10 ms; only contact that begins after that rings again.
  */
 struct phantom_impact {
 	__u32 gain_mns_m; /* at most PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ frequency_hz */

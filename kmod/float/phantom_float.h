@@ -75,6 +75,20 @@ struct phantom_stick {
 	s32 anchor_nm[3]; /* the stick point */
 };
 
+/* What an impact leaves behind: effects/impact.h. All zero: nothing rings, the next contact may. */
+struct phantom_ring {
+	u64 age_ns;
+	u32 wait_ns; /* without contact, until the next may ring */
+	u32 gate_ns; /* g; 0: nothing rings, and what follows means nothing */
+	s32 normal_q30[3];
+	u32 frequency_hz;
+	u32 decay_us;
+	s32 amplitude_un;
+	s32 energy_nj; /* E_0 */
+	s32 left_nj; /* E */
+	s32 force_un; /* of the tick before, along the normal */
+};
+
 /*
  * One tick. Positions are nm relative to the origin of `set`; the servo rebases the state when
  * the set changes. All of it is plain integers, so that kernel and user mode can compare it.
@@ -98,6 +112,7 @@ struct phantom_float_job {
 	/* effects only: in, and what it is after this tick; a tick may be tried more than once */
 	u32 period_ns;
 	struct phantom_stick stick, stick_next;
+	struct phantom_ring ring, ring_next;
 	/* out */
 	s32 force_un[3];
 	s32 normal_q30[3]; /* of the contact; 0 0 0 without one */

@@ -9,7 +9,7 @@
 #define PHANTOM_FLOAT_PREPARE_H
 
 #include "block.h"
-#include "effects/table.h"
+#include "effects/convert.h"
 #include "wide3.h"
 
 /*

@@ -24,6 +24,20 @@
 
 #define UN_PER_N 1000000
 
+/*
+ * Effects that the tick is to run. With PHANTOM_SECTION_BARE there are none at compile time: what a bench
+ * holds a tick of contact alone against.
+ */
+static inline u32 section_effects(const struct phantom_float_job *job)
+{
+#ifdef PHANTOM_SECTION_BARE
+	(void)job;
+	return 0;
+#else
+	return job->effects;
+#endif
+}
+
 /* Settles whether the tip is inside, and the force there. True: outside, the shell is to follow. */
 static inline bool section_settle(struct phantom_float_job *job, struct contact_force *out)
 {
@@ -69,11 +83,46 @@ static inline void section_sink(struct phantom_float_job *job, const struct cont
 				  .face[out->deepest_patch % PHANTOM_BLOCK];
 }
 
-/* Effects and the way back to integers. */
+/* Contact, in pieces. True: it is not done. */
+LANES_INLINE bool section_contact(struct phantom_float_job *job, struct shell_state *state)
+{
+	u32 spent = 0;
+
+	if (!job->more) {
+		job->saturated = 0;
+		job->invalid = 0;
+		shell_begin(job->set, state);
+		spent = SECTION_COST_PATH * job->set->block_count;
+		if (job->model.model == PHANTOM_MODEL_OFF || !section_settle(job, &state->out)) {
+			/* what follows leaves it alone */
+			shell_next(state, SHELL_WEIGHED);
+			return false;
+		}
+	}
+	while (state->phase < SHELL_DONE) {
+		job->more = spent >= SHELL_WORK;
+		if (job->more)
+			return true;
+		spent += shell_piece(job, state);
+	}
+	job->more = 0;
+	state->spent = spent;
+	section_sink(job, &state->out);
+	return false;
+}
+
+/* True: not yet done. Apart from the tick, which contact alone takes without it. */
+LANES_NOINLINE bool section_feel(struct phantom_float_job *job, struct shell_state *state)
+{
+	job->more = weigh_more(job, state);
+	if (!job->more)
+		effects_apply(job, &state->out);
+	return job->more;
+}
+
+/* The way back to integers. */
 static inline void section_finish(struct phantom_float_job *job, struct contact_force *contact)
 {
-	if (__builtin_expect(job->effects != 0, 0))
-		effects_apply(job, contact);
 	if (!real_finite(contact->force.x) || !real_finite(contact->force.y) ||
 	    !real_finite(contact->force.z) || !real_finite(contact->normal.x) ||
 	    !real_finite(contact->normal.y) || !real_finite(contact->normal.z)) {
@@ -93,30 +142,11 @@ static inline void section_finish(struct phantom_float_job *job, struct contact_
 static bool section_tick(struct phantom_float_job *job)
 {
 	struct shell_state *state = shell_state(job->set);
-	u32 spent = 0;
 
-	if (!job->more) {
-		job->saturated = 0;
-		job->invalid = 0;
-		shell_begin(job->set, state);
-		spent = SECTION_COST_PATH * job->set->block_count;
-		if (job->model.model == PHANTOM_MODEL_OFF || !section_settle(job, &state->out)) {
-			section_finish(job, &state->out);
-			return false;
-		}
-	}
-	while (state->phase < SHELL_DONE) {
-		job->more = spent >= SHELL_WORK;
-		if (job->more)
-			return true;
-		spent += shell_piece(job, state);
-	}
-	job->more = 0;
-	if (__builtin_expect(job->effects != 0, 0) && weigh_more(job, state, spent)) {
-		job->more = 1;
+	if (section_contact(job, state))
 		return true;
-	}
-	section_sink(job, &state->out);
+	if (__builtin_expect(section_effects(job) != 0, 0) && section_feel(job, state))
+		return true;
 	section_finish(job, &state->out);
 	return false;
 }

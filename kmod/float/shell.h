@@ -58,6 +58,7 @@ struct shell_state {
 	u32 count; /* projected: roots; paper: steps with a contact */
 	u32 fans; /* paper: contacts over fans found, then left */
 	u32 fans_looked_at;
+	u32 spent; /* of the section in which the shell was done */
 };
 
 _Static_assert(sizeof(struct shell_state) <= SHELL_SCRATCH_BYTES, "grow SHELL_SCRATCH_BYTES");

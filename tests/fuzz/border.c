@@ -59,27 +59,27 @@ int border_check(const struct phantom_set* set, uint64_t last_id, struct border_
     return 0;
 }
 
-static void border_slot(const struct border_set* set, struct phantom_slot* slot)
+static void border_frame(const struct border_set* set, struct phantom_frame* frame)
 {
-    memcpy(slot->origin_nm, set->origin_nm, sizeof(slot->origin_nm));
-    memcpy(slot->centre_nm, set->centre_nm, sizeof(slot->centre_nm));
-    slot->radius_nm = set->radius_nm;
+    memcpy(frame->origin_nm, set->origin_nm, sizeof(frame->origin_nm));
+    memcpy(frame->centre_nm, set->centre_nm, sizeof(frame->centre_nm));
+    frame->radius_nm = set->radius_nm;
 }
 
 bool border_relative(const struct border_set* set, const int64_t position_nm[3], int32_t relative_nm[3])
 {
-    struct phantom_slot slot;
+    struct phantom_frame frame;
     s64 position[3];
 
-    border_slot(set, &slot);
+    border_frame(set, &frame);
     memcpy(position, position_nm, sizeof(position));
-    return phantom_set_relative(&slot, position, relative_nm);
+    return phantom_frame_relative(&frame, position, relative_nm);
 }
 
 bool border_covers(const struct border_set* set, const int32_t point_nm[3], uint32_t ball_nm)
 {
-    struct phantom_slot slot;
+    struct phantom_frame frame;
 
-    border_slot(set, &slot);
-    return phantom_set_covers(&slot, point_nm, ball_nm);
+    border_frame(set, &frame);
+    return phantom_frame_covers(&frame, point_nm, ball_nm);
 }

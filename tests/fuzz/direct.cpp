@@ -78,8 +78,12 @@ struct Bounds {
             factor += PHANTOM_FRICTION_MAX_PPM * 1e-6;
             added += PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM * 1e-3 * still_mm;
         }
-        if (effects.texture)
+        if (effects.texture || effects.mask & PHANTOM_EFFECT_HEIGHT_MAP)
             factor += 1.5 * std::sqrt(2.25 + 1);
+        if (effects.impact)
+            added += PHANTOM_EFFECT_FORCE_MAX_UN * 1e-6;
+        if (effects.field)
+            added += 2 * PHANTOM_EFFECT_FORCE_MAX_UN * 1e-6; // along each axis
         if (effects.constant)
             added += norm(effects.constant->force_un) * 1e-6;
         if (effects.viscosity)
@@ -126,12 +130,14 @@ class Section {
     bool valid_ = false, inside_ = false, stuck_ = false;
     Point previous_{}, proxy_{}, anchor_{};
     std::uint32_t coefficient_q24_ = 0;
+    phantom_ring ring_{};
     std::uint32_t proxy_face_ = PHANTOM_PATCH_NONE;
 };
 
 void Section::forget()
 {
     valid_ = inside_ = stuck_ = false;
+    ring_ = {};
     proxy_face_ = PHANTOM_PATCH_NONE;
 }
 
@@ -141,7 +147,9 @@ void Section::take(const phantom_set& set, const border_set& border)
     const phantom_material* materials = border.materials;
     bounds_ = Bounds(materials, set.material_count, patches, set.patch_count);
     border_ = border;
-    effects_ = set.effects;
+    effects_ = set.effects & ~PHANTOM_EFFECT_TIP;
+    if (!(effects_ & PHANTOM_EFFECT_IMPACT))
+        ring_ = {};
     stuck_ = stuck_ && effects_ & PHANTOM_EFFECT_FRICTION;
     std::size_t bytes = ops_->set_bytes(set.patch_count);
     if (border.effects) {
@@ -199,6 +207,7 @@ bool Section::tick(const Point& tip, const phantom_model& model, const std::int3
     job_.model = model;
     job_.effects = effects_;
     job_.period_ns = 1'000'000;
+    job_.ring = ring_;
     job_.stick.coefficient_q24 = coefficient_q24_;
     job_.stick.held = stuck_ && border_relative(&border_, anchor_.data(), job_.stick.anchor_nm);
     std::copy_n(velocity_nm_s, 3, job_.velocity_nm_s);
@@ -219,6 +228,7 @@ bool Section::tick(const Point& tip, const phantom_model& model, const std::int3
     inside_ = job_.inside != 0;
     proxy_face_ = inside_ ? job_.proxy_face : PHANTOM_PATCH_NONE;
     stuck_ = effects_ & PHANTOM_EFFECT_FRICTION && job_.stick_next.held;
+    ring_ = effects_ & PHANTOM_EFFECT_IMPACT ? job_.ring_next : phantom_ring{};
     coefficient_q24_ = job_.stick_next.coefficient_q24;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         proxy_[axis] = border_.origin_nm[axis] + job_.proxy_nm[axis];
@@ -248,7 +258,7 @@ void Section::check() const
              "a force at the end of its range is not counted as saturated");
     must(Bounds::norm(job_.normal_q30) <= PHANTOM_Q30_ONE * (1 + relative_tolerance),
          "the contact's normal is longer than 1");
-    if (!job_.contacts && !job_.inside && !(job_.effects & PHANTOM_EFFECTS_SPACE))
+    if (!job_.contacts && !job_.inside && !(job_.effects & (PHANTOM_EFFECTS_SPACE | PHANTOM_EFFECT_IMPACT)))
         must(Bounds::norm(job_.force_un) == 0, "there is a force without a contact");
 }
 

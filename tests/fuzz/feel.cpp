@@ -71,27 +71,73 @@ phantom_guide guide(bool most, const __s64 (&origin_nm)[3])
     return out;
 }
 
+phantom_impact impact(bool most)
+{
+    return most ? phantom_impact{PHANTOM_IMPACT_GAIN_MAX_MNS_M_PER_HZ * PHANTOM_IMPACT_FREQUENCY_MAX_HZ,
+                                 PHANTOM_EFFECT_FORCE_MAX_UN, PHANTOM_IMPACT_FREQUENCY_MAX_HZ,
+                                 PHANTOM_IMPACT_DECAY_MAX_US}
+                : phantom_impact{5000, 1'000'000, 150, 15'000};
+}
+
+/// A chessboard along x, full of slope, or gentle bumps.
+void append_map(Table& to, bool most)
+{
+    const phantom_height_map map{8, 4, most ? 0xffffffffU : 300'000, most ? 0x7fffffffU : 40'000};
+    append(to, map);
+    for (std::uint32_t i = 0; i < map.columns * map.rows; ++i) {
+        const auto height = std::int32_t(map.amplitude_nm);
+        append(to, i % 2 ? height : most ? -height : 0);
+    }
+}
+
+/// Thrice 3 x 3 nodes round the origin: the middle pulls.
+void append_field(Table& to, bool most, const __s64 (&origin_nm)[3])
+{
+    phantom_field field{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        field.spacing_nm[axis] = most ? 1'000'000 : 4'000'000;
+        field.nodes[axis] = 3;
+        field.corner_nm[axis] = std::clamp<std::int64_t>(origin_nm[axis] - field.spacing_nm[axis],
+                                                         -PHANTOM_POSITION_MAX_NM, PHANTOM_POSITION_MAX_NM);
+    }
+    field.border_nm = most ? PHANTOM_BORDER_MIN_NM : 2'000'000;
+    append(to, field);
+    for (int node = 0; node < 27; ++node)
+        for (int part = 0; part < 3; ++part)
+            append(to, std::int32_t(node != 13 ? 0 : most ? PHANTOM_EFFECT_FORCE_MAX_UN : 200'000));
+    append(to, std::int32_t(0));
+}
+
+bool has(std::uint8_t feel, std::uint8_t bits)
+{
+    return (feel & bits) == bits;
+}
+
 } // namespace
 
 std::uint32_t surface_effects(std::uint8_t feel, std::uint32_t radius_nm)
 {
     return (feel & magnet_bit && radius_nm > 1 ? PHANTOM_EFFECT_MAGNET : 0) |
            (feel & friction_bit ? PHANTOM_EFFECT_FRICTION : 0) |
-           (feel & texture_bit ? PHANTOM_EFFECT_TEXTURE : 0);
+           (feel & texture_bit ? PHANTOM_EFFECT_TEXTURE : 0) |
+           (has(feel, friction_bit | texture_bit) ? PHANTOM_EFFECT_HEIGHT_MAP : 0) |
+           (has(feel, magnet_bit | friction_bit) ? PHANTOM_EFFECT_IMPACT : 0);
 }
 
 std::uint32_t space_effects(std::uint8_t feel)
 {
     return (feel & constant_bit ? PHANTOM_EFFECT_CONSTANT : 0) |
            (feel & viscosity_bit ? PHANTOM_EFFECT_VISCOSITY : 0) |
-           (feel & guide_bit ? PHANTOM_EFFECT_GUIDE : 0);
+           (feel & guide_bit ? PHANTOM_EFFECT_GUIDE : 0) |
+           (has(feel, constant_bit | viscosity_bit) ? PHANTOM_EFFECT_FIELD : 0) |
+           (has(feel, viscosity_bit | guide_bit) ? PHANTOM_EFFECT_TIP : 0);
 }
 
 std::vector<std::uint8_t> effect_tables(const std::vector<phantom_material>& materials,
                                         const std::vector<std::uint8_t>& feels, const __s64 (&origin_nm)[3])
 {
     Table out;
-    std::uint8_t space = 0;
+    std::uint32_t space = 0;
     const auto each = [&](std::uint32_t effect, auto&& entry) {
         for (std::size_t i = 0; i < materials.size(); ++i)
             if (materials[i].effects & effect)
@@ -100,19 +146,29 @@ std::vector<std::uint8_t> effect_tables(const std::vector<phantom_material>& mat
     each(PHANTOM_EFFECT_MAGNET, magnet);
     each(PHANTOM_EFFECT_FRICTION, [](bool most, std::uint32_t) { return friction(most); });
     each(PHANTOM_EFFECT_TEXTURE, [](bool most, std::uint32_t) { return texture(most); });
-    for (const std::uint8_t feel : feels)
-        space |= feel;
-    const bool most = space & most_bit;
-    if (space & constant_bit)
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        if (materials[i].effects & PHANTOM_EFFECT_HEIGHT_MAP)
+            append_map(out, feels[i] & most_bit);
+    each(PHANTOM_EFFECT_IMPACT, [](bool most, std::uint32_t) { return impact(most); });
+    bool most = false;
+    for (const std::uint8_t feel : feels) {
+        space |= space_effects(feel);
+        most |= feel & most_bit;
+    }
+    if (space & PHANTOM_EFFECT_CONSTANT)
         append(out, constant(most));
-    if (space & viscosity_bit) {
+    if (space & PHANTOM_EFFECT_VISCOSITY) {
         append(out, phantom_effect_count{1, 0});
         append(out, viscosity(most, origin_nm));
     }
-    if (space & guide_bit) {
+    if (space & PHANTOM_EFFECT_GUIDE) {
         append(out, phantom_effect_count{1, 0});
         append(out, guide(most, origin_nm));
     }
+    if (space & PHANTOM_EFFECT_FIELD)
+        append_field(out, most, origin_nm);
+    if (space & PHANTOM_EFFECT_TIP)
+        append(out, phantom_tip{std::uint32_t(most ? PHANTOM_TIP_RADIUS_MAX_NM : 1'000'000), 0});
     return out;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Effects of a set under construction, from one byte of each material: bits 1 to 3 name those of its surface
 // (magnet, friction, texture), 4 to 6 those of space (constant, viscosity, guide), bit 7 asks for the most
-// that the border lets pass.
+// that the border lets pass. Pairs call for more: magnet and friction for an impact, friction and texture for
+// a height map, constant and viscosity for a field, viscosity and guide for a ball as tip.
 #pragma once
 
 #include <cstdint>

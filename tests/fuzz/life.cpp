@@ -135,6 +135,8 @@ bool Life::submit(const phantom_set& set)
     const int error = both([&](Machine& m) {
         phantom_um_inject_allocation_failure(fail_allocation_);
         phantom_set copy = set;
+        if (!copy.time_ns)
+            copy.time_ns = machines_.front().page().time_ns;
         const int result = m.call(PHANTOM_SUBMIT_SET, &copy);
         phantom_um_inject_allocation_failure(0);
         return result;

@@ -2,6 +2,8 @@
 #include "script.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
@@ -19,6 +21,29 @@ std::int64_t tick_work(std::size_t patches)
 {
     const auto n = std::int64_t(patches);
     return 1 + n + n * n / 64;
+}
+
+/// Translation from the set's origin, origin in the frame, rotation, velocities.
+void read_motion(Bytes& in, const Ruler& ruler, phantom_object& object)
+{
+    object.flags = PHANTOM_OBJECT_MOVES;
+    const Point translation = ruler.point(in), origin = ruler.point(in);
+    std::array<double, 4> turn{};
+    double square = 0;
+    for (double& part : turn) {
+        part = in.raw<std::int8_t>();
+        square += part * part;
+    }
+    for (std::size_t i = 0; i < 4 && square > 0; ++i)
+        object.rotation_q30[i] = std::int32_t(std::lround(turn[i] / std::sqrt(square) * PHANTOM_Q30_ONE));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        object.translation_nm[axis] = translation[axis];
+        object.origin_nm[axis] = origin[axis];
+        object.velocity_nm_s[axis] = in.raw<std::int8_t>() * 16'000'000;
+    }
+    // up to 95 rad/s each: some are refused
+    for (std::int32_t& about : object.angular_velocity_urad_s)
+        about = in.raw<std::int8_t>() * 750'000;
 }
 
 class Script {
@@ -187,6 +212,8 @@ void Script::step()
         object.object = in_.byte();
         object.revision = in_.byte();
         object.rotation_q30[0] = PHANTOM_Q30_ONE;
+        if (object.object >= first_mover)
+            read_motion(in_, ruler_, object);
         set_.object(object);
         break;
     }

@@ -14,13 +14,13 @@ void play(const std::uint8_t* data, std::size_t size);
 enum class Operation : std::uint8_t {
     Shape,    ///< adds a shape to the set under construction
     Material, ///< for the faces that follow
-    Object,
-    Ruler,  ///< a power of ten as the unit of lengths
-    Cover,  ///< the coverage
-    Origin, ///< of the set
-    Weld,   ///< whether equal corners are one vertex
-    Repeat, ///< the last shape's faces once more, moved, perhaps flipped
-    Clear,  ///< begins another set
+    Object,   ///< for the faces that follow; from first_mover on one that moves
+    Ruler,    ///< a power of ten as the unit of lengths
+    Cover,    ///< the coverage
+    Origin,   ///< of the set
+    Weld,     ///< whether equal corners are one vertex
+    Repeat,   ///< the last shape's faces once more, moved, perhaps flipped
+    Clear,    ///< begins another set
     Submit,
     Spoil, ///< submits with words overwritten
     Model,
@@ -31,5 +31,8 @@ enum class Operation : std::uint8_t {
     Control,
 };
 constexpr std::uint32_t operations = 17;
+
+/// Objects with such a number have a pose and velocities behind the revision.
+constexpr std::uint8_t first_mover = 240;
 
 } // namespace phantom::fuzz

@@ -2,6 +2,7 @@
 // Writes the inputs that fuzzing begins with: real contact, so that no time goes into finding a face.
 //
 //   fuzz_seeds DIRECTORY
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -72,6 +73,16 @@ class Writer {
             if (std::uint32_t(code % 3) == model && std::uint32_t(code / 4 % 4) == newton_steps &&
                 std::uint32_t(code / 16 % 2) == combine && std::uint32_t(code / 32 % 3) == proxy)
                 return operation(Operation::Model).byte(code).byte(int(arith));
+        return *this;
+    }
+    /// Steps from the set's origin; a 127th of 2 m/s and of 95 rad/s. Turned by some 37 degrees about z.
+    Writer& mover(int number, std::array<int, 3> at, std::array<int, 3> velocity, std::array<int, 3> about)
+    {
+        operation(Operation::Object).byte(number).byte(0).point(at[0], at[1], at[2]).point(0, 0, 0);
+        byte(120).byte(0).byte(0).byte(40);
+        for (const auto& part : {velocity, about})
+            for (const int x : part)
+                byte(x & 0xff);
         return *this;
     }
     Writer& submit() { return operation(Operation::Submit); }
@@ -254,6 +265,16 @@ void add_lives(std::vector<Seed>& to)
             .raw<std::uint16_t>(std::uint16_t(9 + part))
             .raw(0x80000000U);
     to.push_back({"calls-that-are-refused", w});
+
+    // a disc that turns, a plate that rises through the tip, another set with them and one without
+    w = {};
+    w.byte(0x11).material(80, 60, 0).grid(1, 4000, Writer::Plane);
+    w.mover(240, {0, 0, -100}, {0, 0, 90}, {0, 0, 17}).grid(2, 900, Writer::Plane);
+    w.mover(243, {50, -50, -300}, {0, 0, 60}, {0, 3, 0}).ball(1, false, 1500, 20);
+    w.submit().control(Control::Start, 0).touch(0, 21, 20, 9).rest(60).submit().rest(30);
+    w.touch(3, 21, -20, 9).rest(9).submit().tour(12);
+    w.operation(Operation::Clear).grid(1, 4000, Writer::Plane).submit().rest(99).touch(0, 21, 5).rest(30);
+    to.push_back({"what-moves-comes-and-goes", w});
 
     w = {};
     w.byte(0x13)

@@ -243,6 +243,11 @@ double SetBuilder::radius_nm(std::size_t face) const
     return materials_[face < faces_.size() ? faces_[face].material : material_].radius_nm;
 }
 
+std::uint32_t SetBuilder::frame(const phantom_patch& patch) const
+{
+    return objects_[patch.object].flags & PHANTOM_OBJECT_MOVES ? patch.object + 1 : 0;
+}
+
 void SetBuilder::link_neighbours()
 {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;
@@ -252,7 +257,8 @@ void SetBuilder::link_neighbours()
     for (phantom_patch& patch : faces_) {
         for (std::size_t i = 0; i < 3; ++i) {
             const auto at = edges.find({patch.vertex[(i + 1) % 3], patch.vertex[i]});
-            patch.neighbour[i] = at == edges.end() ? PHANTOM_PATCH_NONE : at->second;
+            const bool beside = at != edges.end() && frame(faces_[at->second]) == frame(patch);
+            patch.neighbour[i] = beside ? at->second : PHANTOM_PATCH_NONE;
         }
     }
 }
@@ -285,6 +291,12 @@ phantom_set& SetBuilder::request(std::uint64_t id)
         std::memcpy(sent_materials_.data() + materials_.size(), tables.data(), tables.size());
     sent_objects_ = {};
     std::copy(objects_.begin(), objects_.end(), sent_objects_.begin());
+    // a frame lies where the set does, or tips would never be near it
+    for (phantom_object& object : sent_objects_)
+        if (object.flags & PHANTOM_OBJECT_MOVES)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                object.translation_nm[axis] += std::clamp<std::int64_t>(
+                    origin_[axis], -PHANTOM_POSITION_MAX_NM, PHANTOM_POSITION_MAX_NM);
     header_.patches = reinterpret_cast<std::uintptr_t>(sent_patches_.data());
     header_.materials = reinterpret_cast<std::uintptr_t>(sent_materials_.data());
     header_.objects = reinterpret_cast<std::uintptr_t>(sent_objects_.data());

@@ -67,6 +67,8 @@ class SetBuilder {
     std::uint32_t vertex_number(const Point& point);
     void append(std::vector<phantom_patch>& to, const std::array<Point, 3>& corner,
                 const std::array<Direction, 3>& normal);
+    /// A number of its own for each object that moves, 0 for the others.
+    [[nodiscard]] std::uint32_t frame(const phantom_patch& patch) const;
     void link_neighbours();
 
     std::vector<phantom_patch> faces_, fans_, rims_;

@@ -65,6 +65,42 @@ TEST_F(AllocationOfAMachine, SubmitSurvivesEachFailureAndKeepsTheSetInUse)
     EXPECT_NEAR(feeder.status().force_un[2], 1'000'000, 5);
 }
 
+TEST_F(AllocationOfAMachine, SetWhoseObjectsMoveSurvivesEachFailureOnceASlot)
+{
+    File feeder(machine);
+    const auto moving = [](std::uint64_t id) {
+        Plane plane(id);
+        plane.objects[0].flags = PHANTOM_OBJECT_MOVES;
+        phantom_object beside = plane.objects[0];
+        beside.object = 1;
+        plane.objects.push_back(beside); // without patches, and so without memory
+        return plane;
+    };
+    feeder.move(0, 0, 2'000'000);
+    ASSERT_EQ(feeder.start_unlimited(), 0);
+    Plane first = moving(1);
+    EXPECT_EQ(fail_each_allocation([&] { return feeder.submit(first); }), 3)
+        << "the copy; room to sort it; the object's frame, the scene's is there";
+    step(30);
+    Plane next = moving(2);
+    EXPECT_EQ(fail_each_allocation([&] { return feeder.submit(next); }), 2) << "a second slot";
+    step();
+    EXPECT_EQ(feeder.status().set_id, 2u);
+    EXPECT_NEAR(feeder.status().force_un[2], 1'000'000, 5);
+    for (std::uint64_t id = 3; id <= 8; ++id) {
+        Plane more = moving(id);
+        ASSERT_EQ(feeder.submit(more), 0);
+        step(id % 2);
+    }
+    phantom_um_inject_allocation_failure(1);
+    for (std::uint64_t id = 9; id <= 20; ++id) {
+        Plane more = moving(id);
+        EXPECT_EQ(feeder.submit(more), 0);
+        step(id % 3);
+    }
+    phantom_um_inject_allocation_failure(0);
+}
+
 TEST_F(AllocationOfAMachine, SlotsAreReusedWithoutAllocating)
 {
     File feeder(machine);

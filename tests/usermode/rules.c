@@ -8,6 +8,7 @@
 #include "phantom_chardev.h"
 #include "phantom_context.h"
 #include "phantom_servo.h"
+#include "phantom_touch.h"
 #include "rules.h"
 
 static struct phantom_virtual_clock virtual_clock;
@@ -122,7 +123,7 @@ void rules_break_run(void)
     pthread_create(&other, NULL, become_servo, NULL);
     pthread_join(other, NULL);
     mutex_lock(&servo.control);
-    phantom_servo_forget_touch(&servo);
+    phantom_touch_forget(&servo);
 }
 
 void rules_break_section(void)

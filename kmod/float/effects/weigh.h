@@ -69,9 +69,10 @@ LANES_NOINLINE u32 weigh_piece(const struct phantom_float_job *job, struct shell
 }
 
 /* True: there is more to weigh than this section may do. */
-static inline bool weigh_more(const struct phantom_float_job *job, struct shell_state *state,
-			      u32 spent)
+static inline bool weigh_more(const struct phantom_float_job *job, struct shell_state *state)
 {
+	u32 spent = state->spent;
+
 	if (!(job->effects & EFFECTS_TOUCH) || job->set->material_count < 2)
 		return false;
 	while (state->phase != SHELL_WEIGHED) {

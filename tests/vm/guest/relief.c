@@ -131,3 +131,22 @@ void relief_feel(struct relief_set* relief)
         .tip = {.radius_nm = 500000},
     };
 }
+
+void relief_move(struct relief_set* relief, uint64_t time_ns)
+{
+    double rate = 2 * M_PI * 3, phase = fmod(rate * (double)time_ns * 1e-9, 2 * M_PI);
+    double up_nm = 1e5, round_rad = 3e-3; /* 0.09 mm at the rim */
+    struct phantom_object* object = &relief->object;
+
+    relief->set.time_ns = time_ns;
+    /* the window was cut where the surface is at rest */
+    relief->set.radius_nm -= 200000;
+    object->flags = PHANTOM_OBJECT_MOVES;
+    object->translation_nm[2] = llrint(up_nm * sin(phase));
+    object->velocity_nm_s[2] = (int32_t)lrint(up_nm * rate * cos(phase));
+    object->rotation_q30[0] = (int32_t)lrint(PHANTOM_Q30_ONE * cos(round_rad * cos(phase) / 2));
+    object->rotation_q30[3] = (int32_t)lrint(PHANTOM_Q30_ONE * sin(round_rad * cos(phase) / 2));
+    object->angular_velocity_urad_s[2] = (int32_t)lrint(-1e6 * round_rad * rate * sin(phase));
+    for (int axis = 0; axis < 3; axis++)
+        object->origin_nm[axis] = relief->set.origin_nm[axis];
+}

@@ -50,5 +50,10 @@ double relief_height_nm(double x_nm, double y_nm);
 void relief_cut(struct relief_set* relief, uint64_t id, const int64_t tip_nm[3]);
 /* Gives it every effect that there is. */
 void relief_feel(struct relief_set* relief);
+/*
+ * Lets the surface move, by some 0.2 mm: up and down, and round the scene's z. What it does at that time is
+ * the same for every set.
+ */
+void relief_move(struct relief_set* relief, uint64_t time_ns);
 
 #endif /* VM_RELIEF_H */

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 /*
  * Bits: strokes over a relief, in and out of the surface, with a new set every few milliseconds, with every
- * limit, ramp and fade on. Each becomes a recording, which the host computes again with the user-mode build
- * and compares: what happened on which tick depends on the clock; what came out of it must not.
+ * limit, ramp and fade on; first it rests, then it moves. Each becomes a recording, which the host computes
+ * again with the user-mode build and compares: what happened on which tick depends on the clock; what came
+ * out of it must not.
  */
 #define _GNU_SOURCE
 #include <fcntl.h>
@@ -52,6 +53,9 @@ static void feed(struct hand* hand, const int64_t tip_nm[3])
     /* each fourth feels of nothing: all of it comes and goes by fades */
     if (hand->sets % 4)
         relief_feel(set);
+    /* from the ninth on the surface moves */
+    if (hand->sets > 8)
+        relief_move(set, vm_now_ns());
     vm_expect(hand->fd, PHANTOM_SUBMIT_SET, &set->set, 0, "SUBMIT_SET of the relief");
     recording_set(&set->set);
 }
