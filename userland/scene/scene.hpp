@@ -17,6 +17,7 @@
 #include "mesh/rims.hpp"
 #include "scene/cache_key.hpp"
 #include "scene/deformation.hpp"
+#include "scene/device_settings.hpp"
 #include "scene/effects.hpp"
 #include "scene/motion.hpp"
 
@@ -67,12 +68,6 @@ struct Object : Surface {
     {
         return group_materials.empty() ? material : group_materials[mesh.face_groups[face]];
     }
-};
-
-struct DeviceSettings {
-    std::optional<double> max_force_n;
-    std::optional<double> slew_n_per_ms;
-    std::optional<double> ramp_ms;
 };
 
 struct ServoSettings {

@@ -11,6 +11,7 @@
 
 #include "mesh/read.hpp"
 #include "mesh/vector.hpp"
+#include "scene/device_file.hpp"
 #include "scene/effect_parameters.hpp"
 #include "scene/effects_file.hpp"
 #include "scene/motion_file.hpp"
@@ -302,14 +303,6 @@ void read_objects(TomlReader& root, const toml::table& table, const std::filesys
     }
 }
 
-void read_device(const toml::table& table, Faults& faults, DeviceSettings& out)
-{
-    TomlReader device(table, "device.", {"max_force_n", "slew_n_per_ms", "ramp_ms"}, faults);
-    out.max_force_n = device.number("max_force_n", range::max_force_n);
-    out.slew_n_per_ms = device.number("slew_n_per_ms", range::slew_n_per_ms);
-    out.ramp_ms = device.number("ramp_ms", range::ramp_ms);
-}
-
 void read_servo(const toml::table& table, Faults& faults, ServoSettings& out)
 {
     TomlReader servo(table, "servo.",
@@ -342,7 +335,7 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& file)
     if (const toml::table* effects = root.table("effect"))
         read_space_effects(*effects, file, faults, out.materials, out.effects);
     if (const toml::table* device = root.table("device"))
-        read_device(*device, faults, out.device);
+        out.device = read_device(*device, faults);
     if (const toml::table* servo = root.table("servo"))
         read_servo(*servo, faults, out.servo);
     if (faults.first())
