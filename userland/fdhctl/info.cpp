@@ -95,6 +95,45 @@ Result<Facts> gather(const Options& options)
     return facts;
 }
 
+/// Faces of every group of a mesh, in the order of their numbers.
+std::vector<std::uint64_t> group_sizes(const mesh::Mesh& mesh)
+{
+    std::vector<std::uint64_t> sizes(mesh.group_names.size(), 0);
+    for (const std::uint8_t group : mesh.face_groups)
+        ++sizes[group];
+    return sizes;
+}
+
+const std::string& group_material(const scene::Scene& scene, const scene::Object& object, std::size_t group)
+{
+    return scene.materials[object.group_materials.empty() ? object.material : object.group_materials[group]]
+        .name;
+}
+
+nlohmann::json groups_json(const scene::Scene& scene, const scene::Object& object)
+{
+    nlohmann::json out = nlohmann::json::array();
+    const std::vector<std::uint64_t> sizes = group_sizes(object.mesh);
+    for (std::size_t group = 0; group < sizes.size(); ++group)
+        out.push_back({{"name", object.mesh.group_names[group]},
+                       {"triangles", sizes[group]},
+                       {"material", group_material(scene, object, group)}});
+    return out;
+}
+
+std::string groups_text(const scene::Scene& scene, const scene::Object& object)
+{
+    std::string text;
+    const std::vector<std::uint64_t> sizes = group_sizes(object.mesh);
+    for (std::size_t group = 0; group < sizes.size(); ++group) {
+        const std::string& name = object.mesh.group_names[group];
+        text += fmt::format("{:<11} {}: {} triangles, material {}\n", group == 0 ? "groups" : "",
+                            name.empty() ? "(no name)" : name, sizes[group],
+                            group_material(scene, object, group));
+    }
+    return text;
+}
+
 nlohmann::json json_of(const Facts& facts)
 {
     const scene::Scene& scene = facts.scene;
@@ -107,6 +146,7 @@ nlohmann::json json_of(const Facts& facts)
                            {"fans", object.fans.fans.size()},
                            {"rims", object.rims.edges.size()},
                            {"material", scene.materials[object.material].name},
+                           {"groups", groups_json(scene, object)},
                            {"report", report_json(object)}});
     for (const scene::Material& material : scene.materials) {
         nlohmann::json entry = {{"name", material.name},
@@ -162,6 +202,7 @@ std::string text_of(const Facts& facts)
                             object.file.empty() ? "shape" : object.file.string(),
                             scene.materials[object.material].name);
         text += report_text(object);
+        text += groups_text(scene, object);
         if (!object.fans.fans.empty())
             add("fans", fmt::format("{} over creases and their corners", object.fans.fans.size()));
         if (!object.rims.edges.empty())
@@ -169,7 +210,7 @@ std::string text_of(const Facts& facts)
                 fmt::format("{} edges in {} rim{}: open, so the force fades over the last {:g} mm before "
                             "them (two_sided = true closes it)",
                             object.rims.edges.size(), object.rims.loops, object.rims.loops == 1 ? "" : "s",
-                            scene.materials[object.material].radius_mm));
+                            scene.max_radius_mm(object)));
     }
     text += "\n";
     for (const scene::Material& material : scene.materials)

@@ -11,6 +11,10 @@
 // Where the scene has levels of detail, that need decides on the level first (level_choice.hpp), by the speed
 // that the status page knows and the time between two rounds. The budget grows only where the level's
 // triangles are smaller than elsewhere.
+//
+// Where something moves, every round begins with where it is now: `way` is then the largest of the tip's ways
+// as seen from the scene at rest and from each object that may be felt, and so is its speed. Motion is a
+// function of the device's clock, so a virtual one gives the same sets every time.
 #include "feeder/feeder.hpp"
 
 #include <algorithm>
@@ -23,6 +27,7 @@
 #include "base/vector.hpp"
 #include "feeder/effect_tables.hpp"
 #include "feeder/level_choice.hpp"
+#include "feeder/moving_objects.hpp"
 
 namespace phantom::feeder {
 
@@ -75,9 +80,13 @@ struct Samples {
 struct Detail {
     Detail(const scene::Scene& scene, const fdh::SceneTree<14>& tree_, std::uint32_t patches_max,
            std::shared_ptr<EffectTables> effects)
-        : tree(tree_), builder(scene, patches_max, std::move(effects))
+        : live(scene::LiveScene::is_called_for(scene) ? std::make_unique<scene::LiveScene>(scene, tree_)
+                                                      : nullptr),
+          tree(live ? live->tree() : tree_),
+          builder(live ? live->scene() : scene, patches_max, std::move(effects))
     {
     }
+    std::unique_ptr<scene::LiveScene> live; ///< where something moves or deforms
     const fdh::SceneTree<14>& tree;
     SetBuilder builder;
     std::uint32_t error_nm = 0;
@@ -94,7 +103,8 @@ struct Feeder::Impl {
           radius_mm(scene_.max_radius_mm()),
           budget(first_budget()),
           effects(std::make_shared<EffectTables>(scene_)),
-          choice(std::vector<DetailLevel>(1))
+          choice(std::vector<DetailLevel>(1)),
+          moving(scene_)
     {
         details.push_back(std::make_unique<Detail>(scene_, tree_, device_.info().patches_max, effects));
     }
@@ -107,6 +117,50 @@ struct Feeder::Impl {
         return options.grow_budget
                    ? std::max(first_budget(), std::min<std::uint32_t>(PHANTOM_PATCHES_MAX, budget_max()))
                    : first_budget();
+    }
+
+    /// On the clock that the servo's ticks are on.
+    [[nodiscard]] std::uint64_t now_ns() const
+    {
+        if (device.has_virtual_clock())
+            return device.status().time_ns;
+        // On Linux that is CLOCK_MONOTONIC.
+        return static_cast<std::uint64_t>(
+            std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count());
+    }
+
+    static Vector velocity_mm_s(const phantom_status& status)
+    {
+        Vector velocity{};
+        for (int axis = 0; axis < 3; ++axis)
+            velocity[axis] = static_cast<double>(status.velocity_nm_s[axis]) * mm_per_nm;
+        return velocity;
+    }
+
+    /// Takes everything that moves to where it is now.
+    Status move(const Vector& tip)
+    {
+        scene::LiveScene* live = details.front()->live.get();
+        if (!live)
+            return success();
+        if (!moving.none() && !(device.info().features & PHANTOM_FEATURE_MOVING_OBJECTS))
+            return Error{device.name(), "cannot move objects, and the scene has some that do",
+                         "leave out motion, or use another version of the module"};
+        when.time_ns = now_ns();
+        const double t_s =
+            motion_begin_ns
+                ? 1e-9 * (static_cast<double>(when.time_ns) - static_cast<double>(*motion_begin_ns))
+                : -1.0;
+        live->advance(t_s);
+        moment = live->moment();
+        when.moment = moment.get();
+        if (!moving.none()) {
+            const phantom_status status = device.status();
+            moving.look({moment, tip, velocity_mm_s(status), 1.0 / std::max(1.0, options.rate_hz)},
+                        radius_mm * (1.0 + margin_of_radius));
+            when.near = moving.near();
+        }
+        return success();
     }
 
     /// Takes what use() was given, if anything.
@@ -160,17 +214,15 @@ struct Feeder::Impl {
         if (options.level)
             return std::min(*options.level, static_cast<std::uint32_t>(details.size() - 1));
         const phantom_status status = device.status();
-        Vector velocity{};
-        for (int axis = 0; axis < 3; ++axis)
-            velocity[axis] = static_cast<double>(status.velocity_nm_s[axis]) * mm_per_nm;
+        const Vector velocity = velocity_mm_s(status);
         LevelDemand demand;
-        demand.speed_mm_s = length(velocity);
+        demand.speed_mm_s = std::max(length(velocity), moving.speed_mm_s());
         demand.delay_s = delay_s(status);
         demand.contact_radius_mm = radius_mm;
         if (inside) {
             const Vector deep = tip - proxy;
             demand.depth_mm = length(deep);
-            demand.dive_mm_s = dot(velocity, unit(deep));
+            demand.dive_mm_s = std::max(dot(velocity, unit(deep)), moving.speed_mm_s());
         }
         previous_ns = status.time_ns;
         return static_cast<std::uint32_t>(choice.choose(demand));
@@ -182,7 +234,7 @@ struct Feeder::Impl {
     };
     Wanted wanted(const Vector& tip, const Vector& proxy, bool inside) const
     {
-        const double way = has_previous ? distance(tip, previous) : 0.0;
+        const double way = std::max(has_previous ? distance(tip, previous) : 0.0, moving.way_mm());
         Vector centre = tip;
         double need = radius_mm * (1.0 + margin_of_radius) + way;
         if (inside) {
@@ -192,6 +244,7 @@ struct Feeder::Impl {
         }
         if (has_previous)
             need = std::max(need, distance(previous, centre));
+        need = std::max(need, moving.previous_mm(centre));
         return {centre, need};
     }
 
@@ -242,6 +295,7 @@ struct Feeder::Impl {
             interval_ms.add(microseconds(now - last_time) * 1e-3);
         last_time = now;
         last = report;
+        last_moment = moment;
     }
 
     const scene::Scene& scene;
@@ -256,6 +310,10 @@ struct Feeder::Impl {
     Vector previous{};                            ///< tip of the round before
     bool has_previous = false;
     std::uint64_t previous_ns = 0; ///< time of the status that the last level was chosen by, or 0
+    MovingObjects moving;
+    std::optional<std::uint64_t> motion_begin_ns; ///< nothing: not yet
+    std::shared_ptr<const scene::Moment> moment;  ///< of the set in hand, which is of
+    SetTime when;
     fdh::Nearest nearest;
     device::PatchSet set;
 
@@ -275,6 +333,7 @@ struct Feeder::Impl {
     std::vector<QueryTime> query_times = std::vector<QueryTime>(query_times_max); ///< at set_id % size
     Clock::time_point last_time{};
     FeedReport last;
+    std::shared_ptr<const scene::Moment> last_moment;
 };
 
 Feeder::Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device::Device& device,
@@ -295,6 +354,17 @@ void Feeder::feel(std::vector<scene::Material> materials, std::vector<scene::Spa
     impl_->wished = Impl::Feel{std::move(materials), std::move(effects)};
 }
 
+void Feeder::begin_motion()
+{
+    impl_->motion_begin_ns = impl_->now_ns();
+}
+
+std::shared_ptr<const scene::Moment> Feeder::moment() const
+{
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->last_moment;
+}
+
 Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::array<double, 3>& proxy_mm,
                                 bool inside)
 {
@@ -303,20 +373,24 @@ Result<FeedReport> Feeder::feed(const std::array<double, 3>& tip_mm, const std::
     const auto begin = Clock::now();
     auto queried = begin;
     self.take_feel();
+    if (Status status = self.move(tip_mm); !status)
+        return status.error();
     if (self.options.all) {
         const mesh::Bounds bounds = self.scene.bounds();
         Vector middle{};
         for (int axis = 0; axis < 3; ++axis)
             middle[axis] = 0.5 * (bounds.low[axis] + bounds.high[axis]);
-        self.details.front()->builder.build_all(middle, self.set);
+        self.details.front()->builder.build_all(middle, self.set, self.when);
     } else {
         report.level = self.choose_level(tip_mm, proxy_mm, inside);
         Detail& detail = *self.details[report.level];
+        if (detail.live && report.level > 0)
+            detail.live->follow(*self.details.front()->live);
         const Impl::Wanted want = self.wanted(tip_mm, proxy_mm, inside);
         self.query(want, detail.tree);
         queried = Clock::now();
         self.nearest.sort();
-        detail.builder.build(self.nearest, want.centre, self.set);
+        detail.builder.build(self.nearest, want.centre, self.set, self.when);
         report.hits = self.nearest.hits;
         self.set.header.level = report.level;
         self.set.header.level_error_nm = detail.error_nm;

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
 #include "device/device.hpp"
 #include "fdh/scene_tree.hpp"
 #include "scene/levels.hpp"
+#include "scene/live_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace phantom::feeder {
@@ -40,9 +42,17 @@ struct FeedReport {
     std::vector<fdh::Hit> hits;
 };
 
+/// When a set is of, where something moves.
+struct SetTime {
+    std::uint64_t time_ns = 0;             ///< CLOCK_MONOTONIC, of the poses
+    const scene::Moment* moment = nullptr; ///< nothing moves without one
+    std::span<const std::uint32_t> near{}; ///< objects that move and may come near before the next set
+};
+
 /// Turns hits into a set: world coordinates, origin = the centre, adjacency inside the set. Patches are
 /// ordered by object and face, whatever the order of the hits: the same triangles give the same bits. The
 /// faces' fans follow them in the same order, then the rims that the force over some of the faces fades at.
+/// An object that moves is in its frame (Placement), round the centre as seen from there.
 class SetBuilder {
   public:
     /// patches_max: what the device takes in a set; build_all() does not ask.
@@ -51,14 +61,24 @@ class SetBuilder {
                         std::shared_ptr<EffectTables> effects = nullptr);
     /// nearest: the answer to a query at the centre (world mm), sorted. Patches, materials or objects beyond
     /// what a set can carry cut it short: the coverage then ends at the first left out.
-    void build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm, device::PatchSet& out);
+    void build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm, device::PatchSet& out,
+               const SetTime& when = {});
     /// Every triangle of the scene, covering everything. centre in world mm.
-    void build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out);
+    void build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out, const SetTime& when = {});
 
   private:
-    void begin(const std::array<double, 3>& centre_mm, device::PatchSet& out);
+    /// What an object's patches are written in.
+    struct Frame {
+        fdh::Pose pose; ///< from the object
+        std::array<std::int64_t, 3> origin_nm;
+    };
+    void begin(const std::array<double, 3>& centre_mm, const SetTime& when, device::PatchSet& out);
+    bool claim_object(std::uint32_t object, device::PatchSet& out);
+    void start_over(device::PatchSet& out);
+    [[nodiscard]] fdh::Pose pose_now(std::uint32_t object) const;
+    const Frame& frame_of(std::uint32_t object) const { return frames_[object_slot_[object]]; }
     /// False when the set has no room for the face's material or object.
-    bool claim(std::uint32_t object, device::PatchSet& out);
+    bool claim(std::uint32_t object, std::uint32_t face, device::PatchSet& out);
     /// Forgets the numbers that claim() gave for these faces.
     void release(const std::vector<std::array<std::uint32_t, 2>>& faces);
     void fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out);
@@ -66,12 +86,9 @@ class SetBuilder {
     /// that it has faces of.
     void find_rims(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
                    double coverage_mm);
-    void add_rim(std::uint32_t object, std::uint32_t rim, const std::array<std::int64_t, 3>& origin_nm,
-                 device::PatchSet& out) const;
-    void add_fans(std::uint32_t object, std::uint32_t face, const std::array<std::int64_t, 3>& origin_nm,
-                  device::PatchSet& out) const;
-    phantom_patch patch(std::uint32_t object, std::uint32_t face,
-                        const std::array<std::int64_t, 3>& origin_nm) const;
+    void add_rim(std::uint32_t object, std::uint32_t rim, device::PatchSet& out) const;
+    void add_fans(std::uint32_t object, std::uint32_t face, device::PatchSet& out) const;
+    phantom_patch patch(std::uint32_t object, std::uint32_t face) const;
 
     const scene::Scene& scene_;
     std::uint32_t patches_max_;
@@ -80,6 +97,11 @@ class SetBuilder {
     std::vector<std::uint32_t> material_slot_;        ///< scratch: scene material to index in the set
     std::vector<std::uint32_t> claimed_;              ///< scratch: scene material of each one in the set
     std::vector<std::uint32_t> object_slot_;          ///< scratch: scene object to index in the set
+    std::vector<std::uint32_t> claimed_objects_;      ///< scratch: scene object of each one in the set
+    std::vector<Frame> frames_;                       ///< scratch: of each one in the set
+    std::array<double, 3> centre_mm_{};               ///< of the set in hand, and
+    SetTime when_;                                    ///< its time
+    std::uint32_t moving_ = 0;                        ///< objects in it that move
     std::vector<std::array<std::uint32_t, 2>> faces_; ///< scratch: (object, face)
     struct NeededRim {
         std::uint32_t object, rim;
@@ -98,11 +120,15 @@ double edge_max_mm(const FeederOptions& options);
 /// (1 m) go, and with `all` the whole scene must lie within them.
 Status check_reach(const scene::Scene& scene, const FeederOptions& options);
 
-/// One feeder per device. Not thread-safe but for use(), feel(), totals(), last() and query_us().
+/// One feeder per device. Not thread-safe but for use(), feel(), totals(), last(), moment() and
+/// query_us().
 class Feeder {
   public:
     Feeder(const scene::Scene& scene, const fdh::SceneTree<14>& tree, device::Device& device,
            const FeederOptions& options);
+
+    /// What moves and deforms begins now; until then it rests. Nothing happens to a scene at rest.
+    void begin_motion();
 
     /// From the next round on the scene's levels of detail are there to choose from (level_choice.hpp), by
     /// the speed on the status page. A set says which it is of, and the servo fades from one to the other.
@@ -130,6 +156,8 @@ class Feeder {
     [[nodiscard]] Totals totals() const;
     /// The latest report, for a viewer in another thread.
     [[nodiscard]] FeedReport last() const;
+    /// Where everything was for the latest set; nothing where nothing moves or deforms.
+    [[nodiscard]] std::shared_ptr<const scene::Moment> moment() const;
     /// What the query for that set took, of the last 4096 sets; 0 when not known.
     [[nodiscard]] double query_us(std::uint64_t set_id) const;
 

@@ -240,6 +240,7 @@ struct Session::Impl {
             std::this_thread::sleep_for(std::chrono::microseconds(100));
         }
         timings.first_force_ms = milliseconds_since(opened);
+        feeder->begin_motion();
         return success();
     }
 

@@ -21,6 +21,10 @@ constexpr std::uint32_t no_slot = std::numeric_limits<std::uint32_t>::max();
 /// distance in the set may differ from the scene's, and what the coverage is made smaller by.
 constexpr double rounding_nm = 2.0;
 
+/// And in a frame that moves: its place is rounded to nm as well, its rotation by 2^-30 a part, which is 2 nm
+/// at PHANTOM_OBJECT_REACH_NM, and the servo rounds the centre that it carries there.
+constexpr double moving_rounding_nm = 10.0;
+
 /// Normals shorter than this have no direction left.
 constexpr double normal_length_min = 1e-9;
 
@@ -87,6 +91,25 @@ Vector face_normal(const Vector& a, const Vector& b, const Vector& c)
     return {n[0] / norm, n[1] / norm, n[2] / norm};
 }
 
+__s32 to_s32(double value)
+{
+    constexpr double most = std::numeric_limits<__s32>::max();
+    return static_cast<__s32>(std::llround(std::clamp(value, -most, most)));
+}
+
+/// Everything but the origin.
+void store_placement(const scene::Placement& placement, phantom_object& out)
+{
+    out.flags = PHANTOM_OBJECT_MOVES;
+    for (int axis = 0; axis < 3; ++axis) {
+        out.translation_nm[axis] = to_nm(placement.centre_mm[axis] + placement.offset_mm[axis]);
+        out.velocity_nm_s[axis] = to_s32(placement.velocity_mm_s[axis] * nm_per_mm);
+        out.angular_velocity_urad_s[axis] = to_s32(placement.angular_velocity_rad_s[axis] * 1e6);
+    }
+    for (int part = 0; part < 4; ++part)
+        out.rotation_q30[part] = to_s32(placement.quaternion[part] * PHANTOM_Q30_ONE);
+}
+
 /// Of an object's surface, unique in the scene; 0 stays 0.
 std::uint32_t surface_number(const scene::Object& object, std::uint32_t surface)
 {
@@ -106,84 +129,120 @@ SetBuilder::SetBuilder(const scene::Scene& scene, std::uint32_t patches_max,
 {
 }
 
-void SetBuilder::begin(const std::array<double, 3>& centre_mm, device::PatchSet& out)
+void SetBuilder::start_over(device::PatchSet& out)
+{
+    out.materials.clear();
+    out.objects.clear();
+    claimed_.clear();
+    claimed_objects_.clear();
+    frames_.clear();
+    moving_ = 0;
+}
+
+void SetBuilder::begin(const std::array<double, 3>& centre_mm, const SetTime& when, device::PatchSet& out)
 {
     out.header = {};
     for (int axis = 0; axis < 3; ++axis)
         out.header.origin_nm[axis] = to_nm(centre_mm[axis]);
+    out.header.time_ns = when.moment ? when.time_ns : 0;
     out.patches.clear();
-    out.materials.clear();
-    out.objects.clear();
-    claimed_.clear();
+    centre_mm_ = centre_mm;
+    when_ = when;
+    start_over(out);
 }
 
-bool SetBuilder::claim(std::uint32_t object, device::PatchSet& out)
+bool SetBuilder::claim_object(std::uint32_t object, device::PatchSet& out)
 {
-    const std::uint32_t material = scene_.objects[object].material;
+    if (object_slot_[object] != no_slot)
+        return true;
+    const scene::Object& owner = scene_.objects[object];
+    const scene::Placement* placement = nullptr;
+    phantom_object entry{};
+    entry.object = object;
+    if (when_.moment) {
+        const scene::Moment::ObjectNow& now = when_.moment->objects[object];
+        placement = now.placement ? &*now.placement : nullptr;
+        entry.revision = now.revision;
+    }
+    if (out.objects.size() == PHANTOM_OBJECTS_MAX || (placement && moving_ == PHANTOM_MOVING_MAX))
+        return false;
+    Frame frame{owner.pose, {}};
+    if (placement) {
+        frame.pose.translation = owner.pose.translation - placement->centre_mm;
+        store_placement(*placement, entry);
+        const Vector centre = placement->to_frame(centre_mm_);
+        for (int axis = 0; axis < 3; ++axis)
+            frame.origin_nm[axis] = entry.origin_nm[axis] = to_nm(centre[axis]);
+        ++moving_;
+    } else {
+        entry.rotation_q30[0] = PHANTOM_Q30_ONE;
+        std::copy_n(out.header.origin_nm, 3, frame.origin_nm.begin());
+    }
+    object_slot_[object] = static_cast<std::uint32_t>(out.objects.size());
+    claimed_objects_.push_back(object);
+    frames_.push_back(frame);
+    out.objects.push_back(entry);
+    return true;
+}
+
+bool SetBuilder::claim(std::uint32_t object, std::uint32_t face, device::PatchSet& out)
+{
+    const std::uint32_t material = scene_.objects[object].material_of(face);
     const bool new_material = material_slot_[material] == no_slot;
-    const bool new_object = object_slot_[object] == no_slot;
-    if ((new_material && out.materials.size() == PHANTOM_MATERIALS_MAX) ||
-        (new_object && out.objects.size() == PHANTOM_OBJECTS_MAX))
+    if ((new_material && out.materials.size() == PHANTOM_MATERIALS_MAX) || !claim_object(object, out))
         return false;
     if (new_material) {
         material_slot_[material] = static_cast<std::uint32_t>(out.materials.size());
         out.materials.push_back(effects_->material(material));
         claimed_.push_back(material);
     }
-    if (new_object) {
-        object_slot_[object] = static_cast<std::uint32_t>(out.objects.size());
-        phantom_object entry{};
-        entry.object = object;
-        entry.rotation_q30[0] = PHANTOM_Q30_ONE;
-        out.objects.push_back(entry);
-    }
     return true;
 }
 
-phantom_patch SetBuilder::patch(std::uint32_t object, std::uint32_t face,
-                                const std::array<std::int64_t, 3>& origin_nm) const
+phantom_patch SetBuilder::patch(std::uint32_t object, std::uint32_t face) const
 {
     const scene::Object& owner = scene_.objects[object];
+    const auto& [pose, origin_nm] = frame_of(object);
     const mesh::Triple& corners = owner.mesh.faces[face];
     const mesh::Triple& normals = owner.mesh.face_normals[face];
     std::array<Vector, 3> world;
     for (int corner = 0; corner < 3; ++corner)
-        world[corner] = to_world(owner.pose, owner.mesh.vertices[corners[corner]]);
+        world[corner] = to_world(pose, owner.mesh.vertices[corners[corner]]);
     const Vector flat = face_normal(world[0], world[1], world[2]);
 
     phantom_patch out{};
     for (int corner = 0; corner < 3; ++corner) {
         for (int axis = 0; axis < 3; ++axis)
             out.vertex_nm[corner][axis] = static_cast<__s32>(to_nm(world[corner][axis]) - origin_nm[axis]);
-        store_normal(rotate(owner.pose, owner.mesh.normals[normals[corner]]), flat, out.normal_q30[corner]);
+        store_normal(rotate(pose, owner.mesh.normals[normals[corner]]), flat, out.normal_q30[corner]);
         out.vertex[corner] = owner.first_vertex + corners[corner];
     }
     out.face = owner.first_face + face;
     out.object = object_slot_[object];
-    out.material = material_slot_[owner.material];
+    out.material = material_slot_[owner.material_of(face)];
     out.kind = PHANTOM_PATCH_FACE;
     out.surface = surface_number(owner, owner.rims.surface_of(face));
     return out;
 }
 
-void SetBuilder::add_fans(std::uint32_t object, std::uint32_t face,
-                          const std::array<std::int64_t, 3>& origin_nm, device::PatchSet& out) const
+void SetBuilder::add_fans(std::uint32_t object, std::uint32_t face, device::PatchSet& out) const
 {
     const scene::Object& owner = scene_.objects[object];
+    const auto& [pose, origin_nm] = frame_of(object);
     for (const mesh::Fan& fan : owner.fans.of(face)) {
         phantom_patch entry{};
         for (int corner = 0; corner < 3; ++corner) {
-            const Vector at = to_world(owner.pose, owner.mesh.vertices[fan.corners[corner]]);
+            const Vector at = to_world(pose, owner.mesh.vertices[fan.corners[corner]]);
             for (int axis = 0; axis < 3; ++axis)
                 entry.vertex_nm[corner][axis] = static_cast<__s32>(to_nm(at[axis]) - origin_nm[axis]);
-            const Vector normal = rotate(owner.pose, fan.normals[corner]);
+            const Vector normal = rotate(pose, fan.normals[corner]);
             store_normal(normal, normal, entry.normal_q30[corner]);
             entry.vertex[corner] = owner.first_vertex + fan.corners[corner];
             entry.neighbour[corner] = PHANTOM_PATCH_NONE;
         }
         entry.face = PHANTOM_PATCH_NONE;
         entry.object = object_slot_[object];
-        entry.material = material_slot_[owner.material];
+        entry.material = material_slot_[owner.material_of(face)];
         entry.kind = fan.over_vertex() ? PHANTOM_PATCH_CORNER : PHANTOM_PATCH_EDGE;
         entry.surface = surface_number(owner, owner.rims.surface_of(face));
         // An edge shorter than a nm is a point to the servo, and no fan.
@@ -194,15 +253,15 @@ void SetBuilder::add_fans(std::uint32_t object, std::uint32_t face,
     }
 }
 
-void SetBuilder::add_rim(std::uint32_t object, std::uint32_t rim,
-                         const std::array<std::int64_t, 3>& origin_nm, device::PatchSet& out) const
+void SetBuilder::add_rim(std::uint32_t object, std::uint32_t rim, device::PatchSet& out) const
 {
     const scene::Object& owner = scene_.objects[object];
+    const auto& [pose, origin_nm] = frame_of(object);
     const mesh::Rim& edge = owner.rims.edges[rim];
-    phantom_patch entry = patch(object, edge.face, origin_nm);
+    phantom_patch entry = patch(object, edge.face);
     const std::array<std::uint32_t, 3> corners = {edge.from, edge.to, edge.to};
     for (int corner = 0; corner < 3; ++corner) {
-        const Vector at = to_world(owner.pose, owner.mesh.vertices[corners[corner]]);
+        const Vector at = to_world(pose, owner.mesh.vertices[corners[corner]]);
         for (int axis = 0; axis < 3; ++axis)
             entry.vertex_nm[corner][axis] = static_cast<__s32>(to_nm(at[axis]) - origin_nm[axis]);
         entry.vertex[corner] = owner.first_vertex + corners[corner];
@@ -217,19 +276,17 @@ void SetBuilder::add_rim(std::uint32_t object, std::uint32_t rim,
 
 void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, device::PatchSet& out)
 {
-    const std::array<std::int64_t, 3> origin_nm = {out.header.origin_nm[0], out.header.origin_nm[1],
-                                                   out.header.origin_nm[2]};
     effects_->fill(claimed_, out);
     out.patches.reserve(faces.size());
     for (const auto& [object, face] : faces) {
-        const phantom_patch entry = patch(object, face, origin_nm);
+        const phantom_patch entry = patch(object, face);
         slot_[entry.face] = static_cast<std::uint32_t>(out.patches.size());
         out.patches.push_back(entry);
     }
     for (const auto& [object, face] : faces)
-        add_fans(object, face, origin_nm, out);
+        add_fans(object, face, out);
     for (const NeededRim& needed : rims_)
-        add_rim(needed.object, needed.rim, origin_nm, out);
+        add_rim(needed.object, needed.rim, out);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const scene::Object& owner = scene_.objects[faces[i][0]];
         const mesh::Triple& neighbours = owner.mesh.neighbours[faces[i][1]];
@@ -248,10 +305,16 @@ void SetBuilder::fill(const std::vector<std::array<std::uint32_t, 2>>& faces, de
 
 void SetBuilder::release(const std::vector<std::array<std::uint32_t, 2>>& faces)
 {
-    for (const auto& [object, face] : faces) {
+    for (const std::uint32_t object : claimed_objects_)
         object_slot_[object] = no_slot;
-        material_slot_[scene_.objects[object].material] = no_slot;
+    for (const auto& [object, face] : faces) {
+        material_slot_[scene_.objects[object].material_of(face)] = no_slot;
     }
+}
+
+fdh::Pose SetBuilder::pose_now(std::uint32_t object) const
+{
+    return when_.moment ? when_.moment->pose(scene_, object) : scene_.objects[object].pose;
 }
 
 void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<double, 3>& centre_mm,
@@ -270,9 +333,10 @@ void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<d
         if (s > 0 && surfaces_[s - 1][0] == object)
             continue;
         const scene::Object& owner = scene_.objects[object];
-        const double radius_mm = scene_.materials[owner.material].radius_mm;
+        const double radius_mm = scene_.max_radius_mm(owner);
         near_rims_.clear();
-        owner.rims.within(owner.mesh, to_object(owner.pose, centre_mm), coverage_mm + radius_mm, near_rims_);
+        owner.rims.within(owner.mesh, to_object(pose_now(object), centre_mm), coverage_mm + radius_mm,
+                          near_rims_);
         for (const mesh::Rims::Near& near : near_rims_) {
             const std::array<std::uint32_t, 3> key = {object, owner.rims.edges[near.rim].surface, 0};
             const auto surface = std::lower_bound(surfaces_.begin(), surfaces_.end(), key);
@@ -295,11 +359,11 @@ void SetBuilder::find_rims(const std::vector<fdh::Hit>& hits, const std::array<d
 }
 
 void SetBuilder::build(const fdh::Nearest& nearest, const std::array<double, 3>& centre_mm,
-                       device::PatchSet& out)
+                       device::PatchSet& out, const SetTime& when)
 {
     const std::vector<fdh::Hit>& hits = nearest.hits;
     double coverage_mm = nearest.coverage;
-    begin(centre_mm, out);
+    begin(centre_mm, when, out);
     faces_.clear();
     for (const fdh::Hit& hit : hits)
         faces_.push_back({hit.object, hit.triangle});
@@ -307,7 +371,7 @@ void SetBuilder::build(const fdh::Nearest& nearest, const std::array<double, 3>&
     std::size_t patches = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         patches += 1 + scene_.objects[hits[i].object].fans.of(hits[i].triangle).size() + rims_from_[i + 1];
-        if (patches > patches_max_ || !claim(hits[i].object, out)) {
+        if (patches > patches_max_ || !claim(hits[i].object, hits[i].triangle, out)) {
             coverage_mm = std::clamp(hits[i].distance - nearest.distance_error, 0.0, coverage_mm);
             faces_.resize(i);
             break;
@@ -317,31 +381,35 @@ void SetBuilder::build(const fdh::Nearest& nearest, const std::array<double, 3>&
     std::sort(faces_.begin(), faces_.end());
     // Claimed again in that order: numbers of materials and objects must not depend on who was nearest.
     release(faces_);
-    out.materials.clear();
-    out.objects.clear();
-    claimed_.clear();
+    start_over(out);
     for (const auto& [object, face] : faces_)
-        claim(object, out);
+        claim(object, face, out);
+    // What moves and is not in the set yet, as far as there is room for it.
+    for (const std::uint32_t object : when_.near)
+        claim_object(object, out);
+    const bool moves = moving_ > 0;
     fill(faces_, out);
-    const double covered_nm = std::floor(coverage_mm * nm_per_mm) - rounding_nm;
+    const double covered_nm =
+        std::floor(coverage_mm * nm_per_mm) - (moves ? moving_rounding_nm : rounding_nm);
     out.header.radius_nm = to_u32(covered_nm);
 }
 
-void SetBuilder::build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out)
+void SetBuilder::build_all(const std::array<double, 3>& centre_mm, device::PatchSet& out, const SetTime& when)
 {
-    begin(centre_mm, out);
+    begin(centre_mm, when, out);
     faces_.clear();
     rims_.clear();
     bool complete = true;
     for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
         if (scene_.objects[object].mesh.faces.empty())
             continue;
-        if (!claim(object, out)) {
-            complete = false;
-            break;
+        for (std::uint32_t face = 0; complete && face < scene_.objects[object].mesh.faces.size(); ++face) {
+            complete = claim(object, face, out);
+            if (complete)
+                faces_.push_back({object, face});
         }
-        for (std::uint32_t face = 0; face < scene_.objects[object].mesh.faces.size(); ++face)
-            faces_.push_back({object, face});
+        if (!complete)
+            break;
         for (std::uint32_t rim = 0; rim < scene_.objects[object].rims.edges.size(); ++rim)
             rims_.push_back({object, rim, 0});
     }

@@ -186,9 +186,10 @@ EdgeCollapse::Corner EdgeCollapse::corner_now(std::uint32_t face, std::uint32_t 
         wedge[i] = wedge_now_[wedge[i]];
     }
     if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0])
-        return {{no_neighbour, no_neighbour, no_neighbour}, {}};
+        return {{no_neighbour, no_neighbour, no_neighbour}, {}, 0};
     const std::size_t i = at[0] == vertex ? 0 : at[1] == vertex ? 1 : 2, j = (i + 1) % 3, k = (i + 2) % 3;
-    return {{at[i], at[j], at[k]}, {wedge[i], wedge[j], wedge[k]}};
+    const std::uint8_t group = wedges_.face_groups.empty() ? std::uint8_t{0} : wedges_.face_groups[face];
+    return {{at[i], at[j], at[k]}, {wedge[i], wedge[j], wedge[k]}, group};
 }
 
 void EdgeCollapse::look_round(std::uint32_t vertex, Ring& ring) const
@@ -214,10 +215,12 @@ void EdgeCollapse::look_round(std::uint32_t vertex, Ring& ring) const
         ++out.outs;
         out.after_out = corner.vertex[2];
         out.out = {corner.wedge[0], corner.wedge[1]};
+        out.out_group = corner.group;
         Spoke& in = spoke_to(corner.vertex[2]);
         ++in.ins;
         in.before_in = corner.vertex[1];
         in.in = {corner.wedge[0], corner.wedge[2]};
+        in.in_group = corner.group;
     }
 }
 
@@ -411,11 +414,15 @@ void EdgeCollapse::end_pass()
         const Corner corner = corner_now(f, vertex_now_[wedges_.faces[f][0]]);
         if (corner.vertex[0] == no_neighbour)
             continue;
+        if (!wedges_.face_groups.empty())
+            wedges_.face_groups[kept] = corner.group;
         wedges_.faces[kept] = corner.vertex;
         wedges_.corners[kept++] = corner.wedge;
     }
     wedges_.faces.resize(kept);
     wedges_.corners.resize(kept);
+    if (!wedges_.face_groups.empty())
+        wedges_.face_groups.resize(kept);
     const std::vector<std::uint32_t> vertices = renumber(wedges_.faces, wedges_.vertices.size());
     const std::vector<std::uint32_t> wedges = renumber(wedges_.corners, wedges_.vertex_of.size());
     std::vector<std::uint32_t> number(wedges_.vertices.size(), no_neighbour);

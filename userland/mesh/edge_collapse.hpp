@@ -55,7 +55,12 @@ class EdgeCollapse {
         std::uint32_t after_out = no_neighbour;   ///< third corner of the face with the edge running out,
         std::uint32_t before_in = no_neighbour;   ///< and of the one with it running in
         std::array<std::uint32_t, 2> out{}, in{}; ///< wedges (middle, neighbour) of those faces
-        [[nodiscard]] bool plain() const { return outs == 1 && ins == 1 && out == in; }
+        std::uint8_t out_group = 0, in_group = 0; ///< of those faces
+        /// No border, no crease, and no border of two groups of faces, which is kept as a crease is.
+        [[nodiscard]] bool plain() const
+        {
+            return outs == 1 && ins == 1 && out == in && out_group == in_group;
+        }
     };
     /// What is round a vertex; empty for one that stays out of it.
     struct Ring {
@@ -65,6 +70,7 @@ class EdgeCollapse {
     };
     struct Corner {
         Triple vertex, wedge;
+        std::uint8_t group = 0;
     };
     struct Candidate {
         double cost; ///< mm^2

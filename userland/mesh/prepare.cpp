@@ -47,7 +47,8 @@ bool indices_in_range(const Soup& soup)
     };
     return within(soup.faces, soup.vertices.size()) && within(soup.face_normals, soup.normals.size()) &&
            (soup.face_normals.empty() || soup.face_normals.size() == soup.faces.size()) &&
-           (soup.smoothing.empty() || soup.smoothing.size() == soup.faces.size());
+           (soup.smoothing.empty() || soup.smoothing.size() == soup.faces.size()) &&
+           (soup.face_groups.empty() || soup.face_groups.size() == soup.faces.size());
 }
 
 /// Bounds of what the faces use: a stray vertex far away does not count.
@@ -165,6 +166,7 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     report.vertices_read = soup.vertices.size();
     report.faces_read = soup.faces.size();
     report.polygons_crossed = soup.polygons_crossed;
+    report.too_many_groups = soup.too_many_groups;
     progress(0);
     for (Vec3& vertex : soup.vertices)
         vertex = scaled(vertex, options.scale);
@@ -229,6 +231,8 @@ Result<Prepared> prepare(Soup soup, const PrepareOptions& options, const std::st
     mesh.faces = std::move(soup.faces);
     mesh.normals = std::move(soup.normals);
     mesh.face_normals = std::move(soup.face_normals);
+    mesh.face_groups = std::move(soup.face_groups);
+    mesh.group_names = std::move(soup.group_names);
     finish_report(mesh, options.two_sided, report);
     if (options.two_sided && !make_two_sided(mesh))
         return Error{name, "has too many faces to have two sides", "leave out two_sided"};

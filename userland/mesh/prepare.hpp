@@ -63,7 +63,8 @@ struct Findings {
     std::uint64_t vertices = 0, faces = 0; ///< of the result
     double moved_max_mm = 0; ///< no part of the surface was moved farther by welding, sewing and cutting
     double edge_min_mm = 0, edge_median_mm = 0, edge_max_mm = 0;
-    bool watertight = false; ///< every face has a neighbour over each of its edges
+    bool too_many_groups = false; ///< of faces, more than face_groups_max: there are none
+    bool watertight = false;      ///< every face has a neighbour over each of its edges
     double size_mm[3] = {0, 0, 0};
     /// Places where the result is not what it should be, by the last step's checks (validate.cpp). Not 0 is a
     /// fault of this program.

@@ -100,6 +100,9 @@ class LineWalk {
             soup.smoothing = std::move(smoothing_);
     }
 
+    /// Of usemtl where the file has it, else of g.
+    FaceGroups& groups() { return with_materials_ ? by_material_ : by_group_; }
+
     [[nodiscard]] std::size_t corners() const { return corner_normals_.size(); }
 
   private:
@@ -138,6 +141,8 @@ class LineWalk {
             what = normal(words);
         else if (keyword == "s")
             what = smoothing_group(words);
+        else if (keyword == "usemtl" || keyword == "g")
+            name_faces(keyword == "g", words);
         else if (!is_known(keyword))
             what = fmt::format("unknown word \"{}\", expected v, vn, vt or f", keyword.substr(0, 20));
         bytes_[at] = '#';
@@ -183,6 +188,16 @@ class LineWalk {
         return {};
     }
 
+    /// "usemtl NAME", "g NAME ..." for the faces that follow.
+    void name_faces(bool group, Words& words)
+    {
+        std::string& name = group ? group_name_ : material_;
+        name.clear();
+        for (std::string_view word = words.next(); !word.empty(); word = words.next())
+            name.append(name.empty() ? "" : " ").append(word);
+        with_materials_ = with_materials_ || (!group && !name.empty());
+    }
+
     std::string face(Words& words)
     {
         std::size_t corners = 0;
@@ -195,6 +210,8 @@ class LineWalk {
         if (corners < 3)
             return fmt::format("a face with {} corners, expected 3 or more", corners);
         smoothing_.push_back(group_);
+        by_material_.add(material_);
+        by_group_.add(group_name_);
         return {};
     }
 
@@ -260,6 +277,9 @@ class LineWalk {
     bool some_normal_used_ = false;
     std::uint32_t group_ = 0;              ///< smoothing group of the faces that follow; 0: none
     std::vector<std::uint32_t> smoothing_; ///< per face
+    std::string material_, group_name_;    ///< of the faces that follow
+    bool with_materials_ = false;          ///< some face may have one
+    FaceGroups by_material_, by_group_;
     std::int64_t largest_vertex_ = -1, largest_normal_ = -1;
     std::size_t largest_vertex_at_ = 0, largest_normal_at_ = 0;
     std::vector<std::size_t> joined_; ///< offsets of line ends that were blanked
@@ -286,6 +306,7 @@ Result<PolygonSoup> read_obj(std::string& bytes, const std::string& name)
                                        lines.corners())};
     lines.give_normals(soup);
     lines.give_smoothing(soup);
+    soup.groups = std::move(lines.groups());
     return soup;
 }
 

@@ -3,6 +3,7 @@
 
 #include "mesh/bytes.hpp"
 #include "mesh/formats.hpp"
+#include "mesh/ply_groups.hpp"
 #include "mesh/ply_layout.hpp"
 #include "mesh/read_cgal.hpp"
 
@@ -60,6 +61,7 @@ Result<PolygonSoup> read_ply(std::string& bytes, const std::string& name)
                          "cannot be read as a number, expected the values that the header announces"};
         return Error{name, fmt::format("cannot be read beyond byte {}", buffer.position())};
     }
+    soup.groups = ply_face_groups(*layout, bytes);
     return soup;
 }
 

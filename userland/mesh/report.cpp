@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "mesh/edge_index.hpp"
+#include "mesh/face_groups.hpp"
 #include "mesh/rims.hpp"
 #include "mesh/steps.hpp"
 #include "mesh/vector.hpp"
@@ -48,6 +49,10 @@ void warn_defects(bool two_sided, Report& report)
     warn(report.faces_duplicate, "duplicate faces dropped (--prepare none keeps them)");
     warn(report.faces_nonfinite, "faces with a corner that is no finite point dropped");
     warn(report.polygons_crossed, "polygons cross themselves: their triangles overlap, and are felt twice");
+    if (report.too_many_groups)
+        report.warnings.push_back(fmt::format("more than {} groups of faces (materials or colours): they are "
+                                              "not told apart",
+                                              face_groups_max));
 }
 
 } // namespace

@@ -273,6 +273,16 @@ class Simplification {
         return false;
     }
 
+    /// The two faces of the edge are of different groups.
+    bool differs_in_group(HalfedgeHandle half) const
+    {
+        const auto group_at = [this](HalfedgeHandle side) {
+            return soup_.face_groups[soup_face_[static_cast<std::size_t>(mesh_.face_handle(side).idx())]];
+        };
+        return !soup_.face_groups.empty() &&
+               group_at(half) != group_at(HalfedgeHandle(mesh_.opposite_halfedge_handle(half).idx()));
+    }
+
     void mark_features()
     {
         const double cosine = std::cos(options_.crease_deg * std::numbers::pi / 180.0);
@@ -284,7 +294,7 @@ class Simplification {
                 const auto other = mesh_.opposite_halfedge_handle(half);
                 feature = (mesh_.normal(mesh_.face_handle(half)) | mesh_.normal(mesh_.face_handle(other))) <
                               cosine ||
-                          parted(half);
+                          parted(half) || differs_in_group(half);
             }
             mesh_.status(edge).set_feature(feature);
             if (feature)
@@ -424,6 +434,9 @@ SimplifyResult simplify(Soup& soup, const SimplifyOptions& options)
     soup.face_normals = normals_of(soup, faces, faces_from);
     soup.faces = std::move(faces);
     soup.smoothing.clear();
+    for (std::size_t f = 0; f < faces_from.size() && !soup.face_groups.empty(); ++f)
+        soup.face_groups[f] = soup.face_groups[faces_from[f]];
+    soup.face_groups.resize(soup.face_groups.empty() ? 0 : faces_from.size());
     return result;
 }
 

@@ -26,9 +26,9 @@ struct SimplifyResult {
 /// Collapses edges of a soup with normals at all corners, least quadric error first (OpenMesh's decimater,
 /// with its bounds on the distance of what was there, on the turning of faces and on their shape). Features
 /// are kept within error_mm (without it, within a twentieth of an edge): borders, edges sharper than
-/// crease_deg, and edges at whose ends the normals of the two faces differ. Vertices of the result are
-/// vertices of the soup, with their normals there; they come in the same order, and so do faces. Smoothing
-/// groups are dropped: normals say more.
+/// crease_deg, edges between two groups of faces, and edges at whose ends the normals of the two faces
+/// differ. Vertices of the result are vertices of the soup, with their normals there; they come in the same
+/// order, and so do faces. Smoothing groups are dropped: normals say more.
 SimplifyResult simplify(Soup& soup, const SimplifyOptions& options);
 
 } // namespace phantom::mesh

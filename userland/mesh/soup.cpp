@@ -58,6 +58,12 @@ Result<Soup> triangles_of(PolygonSoup&& polygons, const std::string& name)
         return Error{name, fmt::format("has {} vertices but {} normals", soup.vertices.size(),
                                        polygons.normals.size())};
 
+    std::vector<std::uint8_t> groups;
+    soup.too_many_groups = polygons.groups.too_many();
+    polygons.groups.give(groups, soup.group_names);
+    if (!groups.empty() && groups.size() != polygons.polygons())
+        return Error{name, fmt::format("has {} faces but groups for {}", polygons.polygons(), groups.size())};
+
     soup.faces.reserve(polygons.corners.size() - 2 * polygons.polygons());
     if (with_normals)
         soup.face_normals.reserve(soup.faces.capacity());
@@ -90,6 +96,8 @@ Result<Soup> triangles_of(PolygonSoup&& polygons, const std::string& name)
         }
         if (!polygons.smoothing.empty())
             soup.smoothing.insert(soup.smoothing.end(), triangles.size(), polygons.smoothing[p]);
+        if (!groups.empty())
+            soup.face_groups.insert(soup.face_groups.end(), triangles.size(), groups[p]);
     }
     soup.normals = std::move(polygons.normals);
     normalize_all(soup.normals);

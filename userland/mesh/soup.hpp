@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "mesh/face_groups.hpp"
 #include "mesh/mesh.hpp"
 
 namespace phantom::mesh {
@@ -24,6 +25,7 @@ struct PolygonSoup {
     std::vector<std::uint32_t> corner_normals; ///< per corner; empty: the corner's vertex number
 
     std::vector<std::uint32_t> smoothing; ///< per polygon, see Soup; empty when the file has no groups
+    FaceGroups groups;                    ///< of every polygon, or of none
 
     [[nodiscard]] std::size_t polygons() const { return first.size() - 1; }
 };

@@ -130,16 +130,20 @@ class Bisection {
         for (std::size_t f = 0; f < faces; ++f)
             next[f + 1] += next[f];
         std::vector<Triple> sorted(faces), sorted_normals(with_normals_ ? faces : 0);
-        std::vector<std::uint32_t> groups(soup_.smoothing.empty() ? 0 : faces);
+        std::vector<std::uint32_t> smoothing(soup_.smoothing.empty() ? 0 : faces);
+        std::vector<std::uint8_t> groups(soup_.face_groups.empty() ? 0 : faces);
         for (std::size_t f = 0; f < faces; ++f) {
             const std::uint32_t to = next[root_[f]]++;
             sorted[to] = soup_.faces[f];
             if (with_normals_)
                 sorted_normals[to] = soup_.face_normals[f];
+            if (!smoothing.empty())
+                smoothing[to] = soup_.smoothing[root_[f]];
             if (!groups.empty())
-                groups[to] = soup_.smoothing[root_[f]];
+                groups[to] = soup_.face_groups[root_[f]];
         }
-        soup_.smoothing = std::move(groups);
+        soup_.smoothing = std::move(smoothing);
+        soup_.face_groups = std::move(groups);
         soup_.faces = std::move(sorted);
         soup_.face_normals = std::move(sorted_normals);
     }

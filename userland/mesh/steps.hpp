@@ -59,7 +59,8 @@ void corner_normals(Soup& soup, const std::vector<Triple>& neighbours, double cr
 template <typename Drop>
 std::uint64_t remove_faces(Soup& soup, Drop&& drop)
 {
-    const bool with_normals = !soup.face_normals.empty(), with_groups = !soup.smoothing.empty();
+    const bool with_normals = !soup.face_normals.empty(), with_smoothing = !soup.smoothing.empty();
+    const bool with_groups = !soup.face_groups.empty();
     std::size_t kept = 0;
     for (std::size_t f = 0; f < soup.faces.size(); ++f) {
         if (drop(f))
@@ -67,16 +68,20 @@ std::uint64_t remove_faces(Soup& soup, Drop&& drop)
         soup.faces[kept] = soup.faces[f];
         if (with_normals)
             soup.face_normals[kept] = soup.face_normals[f];
-        if (with_groups)
+        if (with_smoothing)
             soup.smoothing[kept] = soup.smoothing[f];
+        if (with_groups)
+            soup.face_groups[kept] = soup.face_groups[f];
         ++kept;
     }
     const std::uint64_t dropped = soup.faces.size() - kept;
     soup.faces.resize(kept);
     if (with_normals)
         soup.face_normals.resize(kept);
-    if (with_groups)
+    if (with_smoothing)
         soup.smoothing.resize(kept);
+    if (with_groups)
+        soup.face_groups.resize(kept);
     return dropped;
 }
 

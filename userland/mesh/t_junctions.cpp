@@ -236,6 +236,7 @@ bool cut_t_junctions(Soup& soup, const std::vector<HalfEdge>& boundary, double t
     Cutter cutter(soup);
     std::vector<Triple> faces, face_normals;
     std::vector<std::uint32_t> smoothing;
+    std::vector<std::uint8_t> face_groups;
     faces.reserve(soup.faces.size() + hits.size());
     std::size_t taken = 0, at = 0;
     for (std::uint32_t f = 0; f < soup.faces.size(); ++f) {
@@ -249,6 +250,8 @@ bool cut_t_junctions(Soup& soup, const std::vector<HalfEdge>& boundary, double t
                 face_normals.push_back(piece.normals);
             if (!soup.smoothing.empty())
                 smoothing.push_back(soup.smoothing[f]);
+            if (!soup.face_groups.empty())
+                face_groups.push_back(soup.face_groups[f]);
         }
     }
     report.moved_max_mm += cutter.moved_mm();
@@ -257,6 +260,7 @@ bool cut_t_junctions(Soup& soup, const std::vector<HalfEdge>& boundary, double t
     soup.faces = std::move(faces);
     soup.face_normals = std::move(face_normals);
     soup.smoothing = std::move(smoothing);
+    soup.face_groups = std::move(face_groups);
     return taken > 0;
 }
 

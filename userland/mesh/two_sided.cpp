@@ -37,6 +37,12 @@ bool make_two_sided(Mesh& mesh)
     mesh.normals = std::move(both.normals);
     mesh.face_normals = std::move(both.face_normals);
     mesh.neighbours = std::move(neighbours);
+    if (!mesh.face_groups.empty()) {
+        std::vector<std::uint8_t> groups = mesh.face_groups.to_vector();
+        groups.reserve(2UL * count);
+        groups.insert(groups.end(), mesh.face_groups.begin(), mesh.face_groups.end());
+        mesh.face_groups = std::move(groups);
+    }
     return true;
 }
 

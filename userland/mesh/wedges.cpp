@@ -52,6 +52,10 @@ Wedges wedges_of(const Mesh& mesh, std::size_t faces, double crease_deg)
     out.vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
     out.faces.assign(mesh.faces.begin(), mesh.faces.begin() + static_cast<std::ptrdiff_t>(faces));
     out.corners.resize(faces);
+    if (!mesh.face_groups.empty())
+        out.face_groups.assign(mesh.face_groups.begin(),
+                               mesh.face_groups.begin() + static_cast<std::ptrdiff_t>(faces));
+    out.group_names = mesh.group_names;
     Groups groups = join_corners(mesh, faces, crease_deg);
     std::vector<std::uint32_t> number(3 * faces, no_neighbour);
     for (std::uint32_t f = 0; f < faces; ++f) {
@@ -84,6 +88,8 @@ Mesh mesh_of(const Wedges& wedges)
     mesh.faces = std::move(soup.faces);
     mesh.normals = std::move(soup.normals);
     mesh.face_normals = std::move(soup.face_normals);
+    mesh.face_groups = wedges.face_groups;
+    mesh.group_names = wedges.group_names;
     return mesh;
 }
 

@@ -11,9 +11,11 @@ namespace phantom::mesh {
 
 struct Wedges {
     std::vector<Vec3> vertices;
-    std::vector<Triple> faces;            ///< indices into vertices
-    std::vector<Triple> corners;          ///< of the same faces, indices into vertex_of
-    std::vector<std::uint32_t> vertex_of; ///< per wedge
+    std::vector<Triple> faces;               ///< indices into vertices
+    std::vector<Triple> corners;             ///< of the same faces, indices into vertex_of
+    std::vector<std::uint32_t> vertex_of;    ///< per wedge
+    std::vector<std::uint8_t> face_groups{}; ///< as a mesh has them
+    std::vector<std::string> group_names{};
 };
 
 /// Of the first `faces` faces of a mesh. An edge is a crease where the normals that its two faces have at an

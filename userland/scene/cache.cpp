@@ -42,6 +42,8 @@ enum Section : std::uint32_t {
     rim_nodes,
     tree_nodes,
     tree_leaves,
+    face_groups,
+    group_names,
     level_stride = 64
 };
 
@@ -101,6 +103,7 @@ class Loader {
         take(normals, out.mesh.normals);
         take(face_normals, out.mesh.face_normals);
         take(neighbours, out.mesh.neighbours);
+        take(face_groups, out.mesh.face_groups);
         take(fans, out.fans.fans);
         take(first_fans, out.fans.first);
         take(rim_edges, out.rims.edges);
@@ -116,13 +119,27 @@ class Loader {
                                                 one.tree_spread, one.tree_triangles, *nodes, *leaves},
                                                file_.keeper());
         const std::size_t count = out.mesh.faces.size();
-        return out.tree && out.tree->triangles() == count && out.mesh.face_normals.size() == count &&
-               out.mesh.neighbours.size() == count &&
+        return take_names(out.mesh, count) && out.tree && out.tree->triangles() == count &&
+               out.mesh.face_normals.size() == count && out.mesh.neighbours.size() == count &&
                (out.fans.first.empty() || out.fans.first.size() == count + 1) &&
                (out.rims.surface.empty() || out.rims.surface.size() == count);
     }
 
   private:
+    /// False when a face has a group that is not there.
+    bool take_names(mesh::Mesh& out, std::size_t faces) const
+    {
+        const std::string names = text_of(file_, base_ + group_names);
+        for (std::size_t at = 0; at < names.size();) {
+            const std::size_t end = names.find('\n', at);
+            out.group_names.push_back(names.substr(at, end - at));
+            at = end + 1;
+        }
+        return out.face_groups.empty() ||
+               (out.face_groups.size() == faces &&
+                *std::max_element(out.face_groups.begin(), out.face_groups.end()) < out.group_names.size());
+    }
+
     template <typename T>
     void take(Section section, SharedArray<T>& out)
     {
@@ -137,22 +154,34 @@ class Loader {
     bool complete_ = true;
 };
 
-Numbers numbers_of(const Surface& surface)
+/// What is written of a surface and lies nowhere in it.
+struct Beside {
+    Numbers numbers;
+    std::string groups; ///< names, a line each: they have no line ends
+};
+
+Beside beside(const Surface& surface)
 {
     const fdh::TreeImage tree = surface.tree->image();
-    return {surface.error_mm,  surface.rims.loops, tree.origin,   tree.step,
-            tree.longest_edge, tree.spread,        tree.triangles};
+    Beside out{{surface.error_mm, surface.rims.loops, tree.origin, tree.step, tree.longest_edge, tree.spread,
+                tree.triangles},
+               {}};
+    for (const std::string& name : surface.mesh.group_names)
+        out.groups += name + '\n';
+    return out;
 }
 
-void add_surface(const Surface& surface, const Numbers& one, std::uint32_t level, SectionWriter& out)
+void add_surface(const Surface& surface, const Beside& one, std::uint32_t level, SectionWriter& out)
 {
     const std::uint32_t base = level * level_stride;
-    out.add(base + numbers, std::span(&one, 1));
+    out.add(base + numbers, std::span(&one.numbers, 1));
     out.add<mesh::Vec3>(base + vertices, surface.mesh.vertices);
     out.add<mesh::Triple>(base + faces, surface.mesh.faces);
     out.add<mesh::Vec3>(base + normals, surface.mesh.normals);
     out.add<mesh::Triple>(base + face_normals, surface.mesh.face_normals);
     out.add<mesh::Triple>(base + neighbours, surface.mesh.neighbours);
+    out.add<std::uint8_t>(base + face_groups, surface.mesh.face_groups);
+    out.add(base + group_names, characters(one.groups));
     out.add<mesh::Fan>(base + fans, surface.fans.fans);
     out.add<std::uint32_t>(base + first_fans, surface.fans.first);
     out.add<mesh::Rim>(base + rim_edges, surface.rims.edges);
@@ -306,7 +335,7 @@ Result<bool> keep(const fs::path& directory, const CacheTicket& ticket, const Ca
     std::error_code code;
     const std::string from = fs::absolute(request.mesh, code).string();
     const mesh::Findings& counts = object.report;
-    const Numbers one = numbers_of(object);
+    const Beside one = beside(object);
     SectionWriter out;
     out.add(version, characters(preparation_id));
     out.add(source, characters(from));
@@ -346,10 +375,10 @@ Status keep_chain(const fs::path& directory, const CacheKey& key, const std::str
     SectionWriter out;
     out.add(version, characters(preparation_id));
     out.add(source, characters(source_text));
-    std::vector<Numbers> all;
+    std::vector<Beside> all;
     all.reserve(chain.size());
     for (const Surface& surface : chain)
-        all.push_back(numbers_of(surface));
+        all.push_back(beside(surface));
     for (std::size_t level = 0; level < chain.size(); ++level)
         add_surface(chain[level], all[level], static_cast<std::uint32_t>(level), out);
     return write(directory, key, out);

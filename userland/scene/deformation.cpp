@@ -10,19 +10,47 @@
 
 namespace phantom::scene {
 
-double Deformation::profile(const mesh::Vec3& rest_mm) const
+Deformation::Parts Deformation::parts(const mesh::Vec3& rest_mm) const
 {
     const mesh::Vec3 from = rest_mm - centre_mm;
     const double height = dot(from, axis);
-    double below = 1;
+    Parts out;
     if (depth_mm) {
         const double u = std::clamp(1 + height / *depth_mm, 0.0, 1.0);
-        below = u * u * (3 - 2 * u);
+        out.below = u * u * (3 - 2 * u);
+        out.below_slope = 6 * u * (1 - u) / *depth_mm;
     }
-    if (kind == Kind::wave)
-        return below * std::cos(std::numbers::pi * dot(from, across) / radius_mm);
-    const double part = std::max(0.0, 1 - (dot(from, from) - height * height) / (radius_mm * radius_mm));
-    return below * part * part;
+    if (kind == Kind::wave) {
+        const double k = std::numbers::pi / radius_mm, phase = k * dot(from, across);
+        out.lateral = std::cos(phase);
+        out.lateral_gradient = -k * std::sin(phase) * across;
+    } else {
+        const mesh::Vec3 radial = from - height * axis;
+        const double part = std::max(0.0, 1 - dot(radial, radial) / (radius_mm * radius_mm));
+        out.lateral = part * part;
+        out.lateral_gradient = (-4 * part / (radius_mm * radius_mm)) * radial;
+    }
+    return out;
+}
+
+double Deformation::profile(const mesh::Vec3& rest_mm) const
+{
+    const Parts at = parts(rest_mm);
+    return at.below * at.lateral;
+}
+
+mesh::Vec3 Deformation::gradient(const mesh::Vec3& rest_mm) const
+{
+    const Parts at = parts(rest_mm);
+    return at.below * at.lateral_gradient + at.lateral * at.below_slope * axis;
+}
+
+double Deformation::compression_max() const
+{
+    // |across . axis| of the lateral part, 1.5 / depth of the smooth step.
+    const double lateral =
+        kind == Kind::wave ? std::numbers::pi / radius_mm * std::abs(dot(across, axis)) : 0.0;
+    return amplitude_mm * (lateral + (depth_mm ? 1.5 / *depth_mm : 0.0));
 }
 
 double Deformation::displacement_mm(double t_s) const

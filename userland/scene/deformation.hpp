@@ -36,10 +36,23 @@ struct Deformation {
 
     /// Profile of a point at rest, -1 ... 1.
     [[nodiscard]] double profile(const mesh::Vec3& rest_mm) const;
+    /// Of the profile, 1/mm.
+    [[nodiscard]] mesh::Vec3 gradient(const mesh::Vec3& rest_mm) const;
+    /// The displaced shape does not fold over as long as this is below 1: the largest change of the
+    /// displacement along its own direction.
+    [[nodiscard]] double compression_max() const;
     /// What the profile is multiplied with: t since the deformation began.
     [[nodiscard]] double displacement_mm(double t_s) const;
     /// No point moves faster than that.
     [[nodiscard]] double speed_max_mm_s() const;
+
+  private:
+    /// The profile is lateral times below.
+    struct Parts {
+        double lateral = 0, below = 1, below_slope = 0; ///< slope along the axis, 1/mm
+        mesh::Vec3 lateral_gradient{};
+    };
+    [[nodiscard]] Parts parts(const mesh::Vec3& rest_mm) const;
 };
 
 } // namespace phantom::scene

@@ -31,7 +31,7 @@ std::vector<Surface> chain_of(const Scene& scene, const Object& object, const fd
                               const LevelOptions& options)
 {
     std::vector<Surface> out;
-    const double radius_mm = scene.materials[object.material].radius_mm;
+    const double radius_mm = scene.max_radius_mm(object);
     const double needed_mm = reach_needed_mm(radius_mm, options.speed_mm_s, options.delay_s);
     const auto enough = [&](const Surface& surface) {
         Object at = object;
@@ -131,6 +131,9 @@ Levels build_levels(const Scene& scene, const fdh::SceneTree<14>& tree, const Le
     // What the whole covers is no more than what its objects do.
     if (levels.finest.p1_mm < reach_needed_mm(scene.max_radius_mm(), options.speed_mm_s, options.delay_s)) {
         for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+            // What deforms has no levels: they would have to deform alike.
+            if (scene.objects[i].deformation)
+                continue;
             chains[i] = chain_of(scene, scene.objects[i], tree.tree(i), options);
             longest = std::max(longest, chains[i].size());
         }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
 #include <chrono>
 
 #include <fmt/format.h>
 
 #include "mesh/read.hpp"
 #include "scene/cache.hpp"
+#include "scene/deforming_surface.hpp"
 #include "scene/ranges.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
@@ -129,8 +131,62 @@ Status fill_cached(const ObjectEntry& entry, const CacheRequest& request,
     return success();
 }
 
-Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const Material& material,
-                           const LoadOptions& options, Scene& scene)
+/// Materials of the groups that the scene file names.
+Status assign_groups(const ObjectEntry& entry, Object& object)
+{
+    if (entry.group_materials.empty())
+        return success();
+    const std::vector<std::string>& names = object.mesh.group_names;
+    object.group_materials.assign(names.size(), entry.material);
+    for (const GroupMaterial& wanted : entry.group_materials) {
+        const auto found = std::find(names.begin(), names.end(), wanted.group);
+        if (found != names.end()) {
+            object.group_materials[static_cast<std::size_t>(found - names.begin())] = wanted.material;
+            continue;
+        }
+        constexpr std::size_t shown_max = 12;
+        std::string expected;
+        for (std::size_t i = 0; i < names.size() && i < shown_max; ++i)
+            if (!names[i].empty())
+                expected += (expected.empty() ? "expected " : ", ") + names[i];
+        if (names.size() > shown_max)
+            expected += " ...";
+        return Error{wanted.where,
+                     fmt::format("{}: materials.{}: the mesh has no such group of faces, {}", object.name,
+                                 wanted.group, expected.empty() ? "and no group at all" : expected)};
+    }
+    return success();
+}
+
+/// A tip that touches must still be within the contact radius when the next shape comes, one that is late
+/// included: so far the servo carries a proxy (phantom_abi.h, OTHER GEOMETRY).
+Status check_rise(const ObjectEntry& entry, const Object& object, double radius_mm)
+{
+    if (!entry.deformation)
+        return success();
+    constexpr double late = 2;
+    const double interval_s = late * revision_interval_s(object.mesh.faces.size());
+    const double rise_mm = entry.deformation->speed_max_mm_s() * interval_s;
+    if (rise_mm <= radius_mm)
+        return success();
+    return Error{entry.deform_where,
+                 fmt::format("{}: deform: rises by {:.3g} mm in the {:.0f} ms between two shapes of {} "
+                             "triangles, expected no more than the contact radius, {:g} mm (a smaller "
+                             "amplitude_mm or frequency_hz)",
+                             object.name, rise_mm, 1e3 * interval_s, object.mesh.faces.size(), radius_mm)};
+}
+
+/// The largest contact radius of the object's materials.
+double reach_mm(const ObjectEntry& entry, const Scene& scene)
+{
+    double reach = scene.materials[entry.material].radius_mm;
+    for (const GroupMaterial& group : entry.group_materials)
+        reach = std::max(reach, scene.materials[group.material].radius_mm);
+    return reach;
+}
+
+Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const LoadOptions& options,
+                           Scene& scene)
 {
     Object object;
     object.name = entry.name;
@@ -139,12 +195,16 @@ Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, cons
     object.material = entry.material;
     object.motion = entry.motion;
     object.deformation = entry.deformation;
-    const CacheRequest request{entry.mesh, prepare_options(file, entry, options), material.radius_mm};
+    const CacheRequest request{entry.mesh, prepare_options(file, entry, options), reach_mm(entry, scene)};
     const Status status = options.cache && is_cacheable(entry.mesh)
                               ? fill_cached(entry, request, *options.cache, object, scene)
                               : fill(entry, request.prepare, request.reach_mm, object);
     if (!status)
         return status.error();
+    if (const Status assigned = assign_groups(entry, object); !assigned)
+        return assigned.error();
+    if (const Status risen = check_rise(entry, object, request.reach_mm); !risen)
+        return risen.error();
     return object;
 }
 
@@ -176,7 +236,7 @@ Result<Scene> load(const std::filesystem::path& file, const LoadOptions& options
     }
     std::uint64_t first_face = 0, first_vertex = 0;
     for (const ObjectEntry& entry : entries->objects) {
-        auto object = make_object(*entries, entry, scene.materials[entry.material], options, scene);
+        auto object = make_object(*entries, entry, options, scene);
         if (!object)
             return object.error();
         object->first_face = static_cast<std::uint32_t>(first_face);

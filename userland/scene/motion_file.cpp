@@ -127,6 +127,13 @@ std::optional<Deformation> read_deformation(TomlReader& object, const std::strin
         out.radius_mm = 0.5 * needed(reader, "wavelength_mm", range::length_mm);
     }
     check_speed(reader, out.speed_max_mm_s());
+    constexpr double compression_max = 0.5;
+    if (reader.has("amplitude_mm") && out.compression_max() > compression_max)
+        reader.fault(
+            "amplitude_mm",
+            fmt::format("is {:g}, expected at most {:.3g}: more would fold the surface over (depth_mm "
+                        "or wavelength_mm is small against it)",
+                        out.amplitude_mm, out.amplitude_mm * compression_max / out.compression_max()));
     return out;
 }
 

@@ -47,14 +47,27 @@ double Scene::max_radius_mm() const
 {
     double radius = 0;
     for (const Object& object : objects)
-        radius = std::max(radius, materials[object.material].radius_mm);
+        radius = std::max(radius, max_radius_mm(object));
+    return radius;
+}
+
+double Scene::max_radius_mm(const Object& object) const
+{
+    if (object.group_materials.empty())
+        return materials[object.material].radius_mm;
+    double radius = 0;
+    for (const std::uint32_t material : object.group_materials)
+        radius = std::max(radius, materials[material].radius_mm);
     return radius;
 }
 
 bool Scene::uses(std::uint32_t material) const
 {
-    return std::any_of(objects.begin(), objects.end(),
-                       [material](const Object& object) { return object.material == material; });
+    return std::any_of(objects.begin(), objects.end(), [material](const Object& object) {
+        const std::vector<std::uint32_t>& groups = object.group_materials;
+        return groups.empty() ? object.material == material
+                              : std::find(groups.begin(), groups.end(), material) != groups.end();
+    });
 }
 
 namespace {

@@ -53,11 +53,18 @@ struct Object : Surface {
     bool from_cache = false;
     std::optional<CacheKey> cache_key{}; ///< of the file that it is kept in
     fdh::Pose pose;
-    std::uint32_t material = 0;                     ///< index into Scene::materials
+    std::uint32_t material = 0; ///< index into Scene::materials
+    /// Of every group of the mesh's faces; empty when all have `material`.
+    std::vector<std::uint32_t> group_materials{};
     std::uint32_t first_face = 0, first_vertex = 0; ///< scene-wide numbers of face 0 and vertex 0
     /// From `pose` and the mesh as they are here, which is at rest.
     std::optional<Motion> motion{};
     std::optional<Deformation> deformation{};
+
+    [[nodiscard]] std::uint32_t material_of(std::uint32_t face) const
+    {
+        return group_materials.empty() ? material : group_materials[mesh.face_groups[face]];
+    }
 };
 
 struct DeviceSettings {
@@ -90,7 +97,9 @@ struct Scene {
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
     [[nodiscard]] double max_radius_mm() const;
-    /// Whether some object is of that material.
+    /// Of an object's materials the largest.
+    [[nodiscard]] double max_radius_mm(const Object& object) const;
+    /// Whether some face is of that material.
     [[nodiscard]] bool uses(std::uint32_t material) const;
     /// Names of the effects that a used material or space calls for ("damping", "guide"), and of the others.
     [[nodiscard]] std::vector<std::string> effects_called_for() const;

@@ -40,7 +40,7 @@ std::vector<Vec3> walk_points(const scene::Scene& scene, std::size_t count)
             return a.mesh.faces.size() < b.mesh.faces.size();
         });
     const auto number = static_cast<std::uint32_t>(&object - scene.objects.data());
-    const double height_mm = 0.5 * scene.materials[object.material].radius_mm;
+    const double height_mm = 0.5 * scene.max_radius_mm(object);
     const auto above = [&](std::uint32_t face) {
         const SurfacePoint at = surface.on_face(number, face, {1 / 3.0, 1 / 3.0, 1 / 3.0});
         return at.position_mm + height_mm * at.normal;

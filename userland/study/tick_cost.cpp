@@ -182,7 +182,8 @@ std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t cou
             face -= scene.objects[object++].mesh.faces.size();
         const SurfacePoint at =
             surface.on_face(object, static_cast<std::uint32_t>(face), {1 / 3.0, 1 / 3.0, 1 / 3.0});
-        const double radius_mm = scene.materials[scene.objects[object].material].radius_mm;
+        const double radius_mm =
+            scene.materials[scene.objects[object].material_of(static_cast<std::uint32_t>(face))].radius_mm;
         points.push_back(at.position_mm + 0.5 * radius_mm * at.normal);
     }
     return points;

@@ -58,7 +58,9 @@ class Tracer {
         model_ = *model;
         if (Status status = device_->set_model(model_); !status)
             return status;
-        tree_.emplace(options_.feeder.all ? fdh::SceneTree<14>() : scene::build_tree<14>(scene_));
+        tree_.emplace(options_.feeder.all && !scene::LiveScene::is_called_for(scene_)
+                          ? fdh::SceneTree<14>()
+                          : scene::build_tree<14>(scene_));
         feeder::FeederOptions feeding = options_.feeder;
         feeding.rate_hz = static_cast<double>(rate_hz_) / options_.feed_every;
         feeding.level = options_.levels.fixed;
@@ -118,7 +120,10 @@ class Tracer {
         }
         if (Status status = device_->start(start); !status)
             return status;
-        return options_.limits ? success() : settle();
+        if (Status status = options_.limits ? success() : settle(); !status)
+            return status;
+        feeder_->begin_motion();
+        return success();
     }
 
     /// The servo fades its first set in. Without limits that is stepped away at the first position, so that

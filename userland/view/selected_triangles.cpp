@@ -55,7 +55,7 @@ void SelectedTriangles::show(std::span<const fdh::Hit> hits, const scene::Scene&
         if (hit.triangle >= object.mesh.faces.size())
             continue;
         // They lie in the surface: draw them a hair above it.
-        const double lift_mm = lift_part * of.materials[object.material].radius_mm;
+        const double lift_mm = lift_part * of.materials[object.material_of(hit.triangle)].radius_mm;
         faces->InsertNextCell(3);
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3& vertex = object.mesh.vertices[object.mesh.faces[hit.triangle][i]];

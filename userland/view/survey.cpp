@@ -102,7 +102,8 @@ void add_speeds(const scene::Scene& scene, std::uint32_t budget, double feed_hz,
         std::vector<unsigned char>& bands = survey.bands.emplace_back();
         for (std::size_t f = 0; f < reaches.size(); ++f) {
             const double speed = scene::speed_allowed_mm_s(
-                reaches[f], scene.materials[object.material].radius_mm, 1 / feed_hz);
+                reaches[f], scene.materials[object.material_of(static_cast<std::uint32_t>(f))].radius_mm,
+                1 / feed_hz);
             std::size_t band = survey.speeds.size() - 1;
             while (band > 0 && speed < survey.speeds[band].from_mm_s)
                 --band;

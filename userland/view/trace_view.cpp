@@ -52,9 +52,11 @@ Result<Moment> moment_of(const Trace& trace, const Options& options, const scene
     selected.show(moment.nearest.hits, scene);
     moment.normal = outward_normal(moment.touch, selected);
     moment.radius_mm = scene.max_radius_mm();
-    if (!moment.nearest.hits.empty())
+    if (!moment.nearest.hits.empty()) {
+        const fdh::Hit& nearest = moment.nearest.hits.front();
         moment.radius_mm =
-            scene.materials[scene.objects[moment.nearest.hits.front().object].material].radius_mm;
+            scene.materials[scene.objects[nearest.object].material_of(nearest.triangle)].radius_mm;
+    }
     return moment;
 }
 
