@@ -24,6 +24,7 @@ class LoopTest : public EffectTest {
         period_s = 1.0 / hz;
         work_n_mm = 0;
         feel(what, arm.read(), {.rate_hz = hz});
+        step(hz / 40); // the force has faded in
         servo = force(arm.read());
     }
 

@@ -39,6 +39,7 @@ struct Field {
 
 /// Parameters by effect; what is not there is not named. Surface effects go to the plane's first material.
 struct Feel {
+    std::uint32_t damping_mns_m = 0;
     std::optional<phantom_magnet> magnet{};
     std::optional<phantom_friction> friction{};
     std::optional<phantom_texture> texture{};
@@ -72,6 +73,10 @@ inline void add_effects(Plane& plane, const Feel& feel)
         named |= effect;
         plane.add_table(*parameters);
     };
+    if (feel.damping_mns_m) {
+        named |= PHANTOM_EFFECT_DAMPING;
+        plane.materials[0].damping_mns_m = feel.damping_mns_m;
+    }
     add(PHANTOM_EFFECT_MAGNET, feel.magnet);
     add(PHANTOM_EFFECT_FRICTION, feel.friction);
     add(PHANTOM_EFFECT_TEXTURE, feel.texture);

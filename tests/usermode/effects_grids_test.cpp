@@ -3,7 +3,7 @@
 #include <numeric>
 #include <random>
 
-#include "effects.hpp"
+#include "effect_laws.hpp"
 
 namespace phantom::test {
 namespace {
@@ -44,43 +44,6 @@ class HeightMapEffect : public EffectTest {
         step(30);
     }
 };
-
-/// The spline of phantom_abi.h at a place in samples.
-double spline(const HeightMap& map, double column, double row)
-{
-    const auto weights = [](double d) {
-        return std::array{0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)};
-    };
-    const auto wrapped = [](double at, std::uint32_t size) {
-        return std::uint32_t(at - std::floor(at / size) * size);
-    };
-    const double c = std::floor(column + 0.5), r = std::floor(row + 0.5);
-    const auto along = weights(column - c), across = weights(row - r);
-    double sum = 0;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            sum += across[std::size_t(i)] * along[std::size_t(j)] *
-                   map.height_nm[wrapped(r + i - 1, map.header.rows) * map.header.columns +
-                                 wrapped(c + j - 1, map.header.columns)];
-    return 1e-6 * sum;
-}
-
-/// k q^2 / 2 with q of relief.h, over the plane through 0 that faces n.
-double relief_energy(const HeightMap& map, const Place& n, const Place& at)
-{
-    const double amplitude = map.header.amplitude_nm * 1e-6, height = dot(at, n), p = 3 - height;
-    const double per_mm = 1e6 / map.header.spacing_nm;
-    double h = 0, parts = 0;
-    constexpr std::size_t columns[] = {1, 0, 0}, rows[] = {2, 2, 1};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double part = std::pow(n[axis], 4), x = at[columns[axis]] - height * n[columns[axis]],
-                     y = at[rows[axis]] - height * n[rows[axis]];
-        parts += part;
-        h += part * spline(map, x * per_mm, y * per_mm);
-    }
-    const double q = p + p / (p + 2 * amplitude) * h / parts;
-    return p > 0 ? 0.5 * q * q : 0;
-}
 
 /// Random heights, no steeper than allowed.
 HeightMap bumps()

@@ -2,12 +2,10 @@
 // Effects of surfaces against their laws: magnet, friction, texture.
 #include <random>
 
-#include "effects.hpp"
+#include "effect_laws.hpp"
 
 namespace phantom::test {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 class Friction : public EffectTest {};
 class Magnet : public EffectTest {};
@@ -192,21 +190,6 @@ TEST_F(Magnet, PressesForFriction)
 }
 
 // ---- texture
-
-/// k q^2 / 2 with q of texture.h, N = 1 N/mm.
-double relief_energy(const phantom_texture& texture, const Place& at)
-{
-    double height = 0, amplitude = 0;
-    for (int i = 0; i < 2; ++i) {
-        double waves = 0;
-        for (int axis = 0; axis < 3; ++axis) // the foot lies in the plane
-            waves += axis == 2 ? 0 : texture.wave_per_km[i][axis] * 1e-6 * at[axis];
-        height += texture.amplitude_nm[i] * 1e-6 * std::sin(2 * pi * waves);
-        amplitude += texture.amplitude_nm[i] * 1e-6;
-    }
-    const double p = 3 - at[2], q = p + p / (p + 2 * amplitude) * height;
-    return p > 0 ? 0.5 * q * q : 0;
-}
 
 const phantom_texture ribs{{50'000, 20'000}, {{1'000'000, 0, 0}, {300'000, -900'000, 2'000'000}}};
 

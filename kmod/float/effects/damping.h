@@ -3,11 +3,13 @@
  * damping.h - effect: normal damping, PHANTOM_EFFECT_DAMPING.
  *
  *   a = F . n                     what the contact gives along its normal, N
- *   F += n (max(0, a - b v . n) - a)
+ *   F += -n clamp(b v . n, -a, a)
  *
  * b in N per mm/s, v in mm/s. The surface pushes harder while the tip moves in, less while it
- * moves out, and never pulls: the total along n does not fall below 0. An a that was negative
- * before (no contact law gives one) is left as it is.
+ * moves out. What is added is never more than a: so the surface never pulls, and where contact
+ * begins or ends the force has no step (as with Hunt & Crossley 1975, whose damping grows with depth;
+ * here it is whole from a depth of b |v . n| / k on). In a sampled loop contact may be twice as stiff.
+ * An a that was negative before (no contact law gives one) is left as it is.
  */
 #ifndef PHANTOM_FLOAT_DAMPING_H
 #define PHANTOM_FLOAT_DAMPING_H
@@ -20,11 +22,11 @@ static inline struct real3 damping_apply(struct real3 force, struct real3 normal
 	struct real3 velocity = {real_from_nm(velocity_nm_s[0]), real_from_nm(velocity_nm_s[1]),
 				 real_from_nm(velocity_nm_s[2])};
 	real along = real3_dot(force, normal);
-	real damped = along - mul(damping, real3_dot(velocity, normal));
+	real against = mul(damping, real3_dot(velocity, normal));
 
 	if (along < 0)
 		return force;
-	return real3_add(force, real3_scale(normal, real_max(0, damped) - along));
+	return real3_sub(force, real3_scale(normal, real_clamp(against, -along, along)));
 }
 
 #endif /* PHANTOM_FLOAT_DAMPING_H */
