@@ -34,6 +34,7 @@ TEST_P(ShippedScene, IsFeltWithoutAFault)
     const fdh::SceneTree<14> tree = scene::build_tree<14>(*scene);
     study::StrokeOptions stroke;
     stroke.seconds = 1;
+    stroke.speed_limit_mm_s = 500; // some scenes are wide
     stroke.rate_hz = scene->servo.rate_hz.value_or(1000);
     const auto path = study::make_stroke(*scene, tree, stroke);
     ASSERT_TRUE(path) << path.error().text();
