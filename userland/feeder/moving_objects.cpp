@@ -26,6 +26,15 @@ MovingObjects::MovingObjects(const scene::Scene& scene)
     tips_now_.resize(bodies_.size());
 }
 
+MovingObjects::Reach MovingObjects::farthest() const
+{
+    Reach out;
+    for (const Body& body : bodies_)
+        if (const double mm = length(body.centre_mm) + body.radius_mm; mm > out.mm)
+            out = {body.object, mm};
+    return out;
+}
+
 void MovingObjects::look(const TipRound& round, double reach_mm)
 {
     round_ = round;

@@ -23,6 +23,12 @@ class MovingObjects {
   public:
     explicit MovingObjects(const scene::Scene& scene);
     [[nodiscard]] bool none() const { return bodies_.empty(); }
+    /// How far an object of the scene may be from its frame's origin, and which.
+    struct Reach {
+        std::uint32_t object = 0;
+        double mm = 0;
+    };
+    [[nodiscard]] Reach farthest() const;
 
     /// Looks at every object for the round in hand; the one before is remembered. reach_mm: within that of a
     /// surface something is felt.
