@@ -85,7 +85,12 @@ TEST_F(BalanceLoop, ContactAlone)
 
 TEST_F(BalanceLoop, Damping)
 {
-    stroke({.feel = {.damping_mns_m = 4000}, .stiffness = 2, .viscous = 4e-3, .lag = 0.02}, 2);
+    double least = 0;
+    stroke({.feel = {.damping_mns_m = 4000}, .stiffness = 2, .viscous = 4e-3, .lag = 0.02}, 2, [&] {
+        least = std::min(least, servo[2]);
+        return 0.0;
+    });
+    EXPECT_EQ(least, 0) << "it never pulls";
     EXPECT_LT(work_n_mm, -0.2) << "it takes";
 }
 

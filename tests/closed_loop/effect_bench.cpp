@@ -170,6 +170,14 @@ struct Column {
 };
 constexpr Column columns[] = {{"paper", PHANTOM_MODEL_PAPER}, {"projected/2", PHANTOM_MODEL_PROJECTED}};
 
+/// Of the tables, as they are submitted.
+std::size_t sent_bytes(const Feel& feel)
+{
+    Plane plane(1);
+    add_effects(plane, feel);
+    return plane.tables.size() * sizeof(plane.tables[0]);
+}
+
 double median_ns(Bench& bench)
 {
     std::vector<double> ns;
@@ -195,7 +203,7 @@ void measure(const char* name, const phantom_float_ops& ops, const Feel& feel, b
         if (!COUNTING) {
             std::printf("  %s %5.0f ns", column.name, median_ns(bench));
             if (&column == std::end(columns) - 1)
-                std::printf("  %5zu B\n", bench.bytes);
+                std::printf("  %5zu B sent, %3zu B prepared\n", sent_bytes(feel), bench.bytes);
             continue;
         }
         const std::string label =
