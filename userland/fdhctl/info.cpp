@@ -13,6 +13,7 @@
 #include "fdhctl/mesh_report.hpp"
 #include "fdhctl/view.hpp"
 #include "feeder/servo_choice.hpp"
+#include "scene/deforming_surface.hpp"
 #include "study/tick_cost.hpp"
 
 namespace phantom::fdhctl {
@@ -134,6 +135,24 @@ std::string groups_text(const scene::Scene& scene, const scene::Object& object)
     return text;
 }
 
+std::string motion_text(const scene::Object& object)
+{
+    std::string text;
+    if (object.motion && object.motion->kind == scene::Motion::Kind::turntable)
+        text += fmt::format("{:<11} turntable, {:g} revolutions per second\n", "motion",
+                            object.motion->frequency);
+    else if (object.motion)
+        text += fmt::format("{:<11} oscillation, {:g} mm, {:g} times a second\n", "motion",
+                            object.motion->amplitude_mm, object.motion->frequency);
+    if (object.deformation)
+        text +=
+            fmt::format("{:<11} {}, {:g} mm, {:g} times a second: a new shape every {:.0f} ms\n", "deform",
+                        object.deformation->kind == scene::Deformation::Kind::drum ? "drum" : "wave",
+                        object.deformation->amplitude_mm, object.deformation->frequency_hz,
+                        1e3 * scene::revision_interval_s(object.mesh.faces.size()));
+    return text;
+}
+
 nlohmann::json json_of(const Facts& facts)
 {
     const scene::Scene& scene = facts.scene;
@@ -147,6 +166,8 @@ nlohmann::json json_of(const Facts& facts)
                            {"rims", object.rims.edges.size()},
                            {"material", scene.materials[object.material].name},
                            {"groups", groups_json(scene, object)},
+                           {"moves", object.motion.has_value()},
+                           {"deforms", object.deformation.has_value()},
                            {"report", report_json(object)}});
     for (const scene::Material& material : scene.materials) {
         nlohmann::json entry = {{"name", material.name},
@@ -202,7 +223,7 @@ std::string text_of(const Facts& facts)
                             object.file.empty() ? "shape" : object.file.string(),
                             scene.materials[object.material].name);
         text += report_text(object);
-        text += groups_text(scene, object);
+        text += groups_text(scene, object) + motion_text(object);
         if (!object.fans.fans.empty())
             add("fans", fmt::format("{} over creases and their corners", object.fans.fans.size()));
         if (!object.rims.edges.empty())
