@@ -101,8 +101,9 @@ phantom_effects tables_of(const Feel& feel)
 }
 
 /// An impact that never ends: what a ring costs while there is one.
-constexpr phantom_ring ringing{
-    3'000'000, 10'000'000, 10'000'000, {0, 0, PHANTOM_Q30_ONE}, 80, 20'000, 400'000, 100'000, 90'000, 10'000};
+constexpr phantom_ring ringing{3'000'000, 10'000'000, 10'000'000, {0, 0, PHANTOM_Q30_ONE},
+                               80,        20'000,     400'000,    100'000,
+                               90'000,    10'000,     0};
 
 class Bench {
   public:
