@@ -435,7 +435,23 @@ TEST_F(Frames, ARevisionOfOneCarriesItsContact)
     EXPECT_NEAR(last, radius + 0.2, 1e-4);
 }
 
-TEST_F(Frames, AnotherArithmeticTakesThemAll)
+/// As many patches as a set can have; all but the plane's lie far below.
+class FullFrames : public Frames {
+  protected:
+    Plane plane(std::uint64_t id) override
+    {
+        Plane out = Frames::plane(id);
+        phantom_patch far = out.patches[0];
+        for (auto& corner : far.vertex_nm)
+            corner[2] -= 500 * mm;
+        for (auto& neighbour : far.neighbour)
+            neighbour = PHANTOM_PATCH_NONE;
+        out.patches.resize(PHANTOM_PATCHES_MAX, far);
+        return out;
+    }
+};
+
+TEST_F(FullFrames, AnotherArithmeticTakesThemAll)
 {
     begin({0, 0, 2});
     for (const std::uint32_t arith : {PHANTOM_ARITH_FIXED, PHANTOM_ARITH_FLOAT, PHANTOM_ARITH_FIXED}) {

@@ -136,6 +136,22 @@ TEST_F(SpaceTables, HeightMapsAndImpactsAreSurfaces)
     EXPECT_EQ(impact.decay_us, 25'000U);
 }
 
+TEST_F(SpaceTables, TwoGratingsShareATable)
+{
+    scene.materials[0].texture = scene::Texture{{0.05, 2, {1, 0, 0}}, scene::Grating{0.1, 4, {0, -0.6, 0.8}}};
+    feeder::EffectTables effects(scene);
+    const std::vector<std::uint32_t> materials = {0};
+    effects.fill(materials, set);
+    set.materials.push_back(effects.material(0));
+    EXPECT_TRUE(device->submit(set));
+    const auto texture = entry<phantom_texture>(0);
+    EXPECT_EQ(texture.amplitude_nm[0], 50'000U);
+    EXPECT_EQ(texture.wave_per_km[0][0], 500'000);
+    EXPECT_EQ(texture.amplitude_nm[1], 100'000U);
+    EXPECT_EQ(texture.wave_per_km[1][1], -150'000);
+    EXPECT_EQ(texture.wave_per_km[1][2], 200'000);
+}
+
 TEST_F(SpaceTables, OfNothingAreNothing)
 {
     feeder::EffectTables effects(scene);

@@ -257,6 +257,8 @@ TEST_F(EffectKeys, AFieldIsAGridOfForces)
     EXPECT_EQ(file_error(header + "0,0,0,0,0,nan\n"), ":2: expected -100 ... 100 N, found 'nan'");
     EXPECT_EQ(file_error(header + rows.substr(0, rows.rfind('\n', rows.size() - 2) + 1)),
               ": has 11 nodes, expected 3 x 2 x 2: every node of the grid once");
+    EXPECT_EQ(file_error(header + rows.substr(0, rows.rfind('\n', rows.size() - 2) + 1) + "0,0,-5,0,0,0\n"),
+              ": names the node at 0, 0, -5 twice");
     EXPECT_EQ(file_error(header + "0,0,0,0,0,0\n"), ": has 1 place along x, expected at least 2");
     EXPECT_EQ(file_error(header + "0,0,0,0,0,0\n1,0,0,0,0,0\n3,0,0,0,0,0\n"),
               ": x_mm = 1 is not evenly spaced, expected steps of 1.5 mm");
