@@ -131,8 +131,8 @@ static inline void section_finish(struct phantom_float_job *job, struct contact_
 }
 
 /*
- * The end of a tick with effects. Apart from the other, and nothing is left to do after it: contact alone pays
- * for one test of the mask.
+ * The end of a tick with effects. Apart from the other, and nothing is left to do after it: contact alone
+ * pays for one test of the mask.
  */
 LANES_NOINLINE bool section_feel(struct phantom_float_job *job)
 {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "feeder/feeder.hpp"
+#include "feeder/moving_objects.hpp"
 #include "feeder/path.hpp"
 #include "scenes.hpp"
 
@@ -137,7 +138,7 @@ TEST(MovingScene, ForceOfABallThatSwingsIsThatOfItsPlaceNow)
     double worst = 0, least = 9, most = 0;
     Vector before = machine.force();
     double step = 0;
-    for (int i = 0; i < 1500; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         const phantom_tick tick = machine.tick(tip);
         ASSERT_FALSE(tick.flags & PHANTOM_TICK_UNCOVERED) << i;
         const scene::Placement now = scene.objects[0].motion->at(machine.seconds());
@@ -169,7 +170,7 @@ TEST(MovingScene, ForceOfABallOnATurntableIsExact)
     machine.begin(tip);
     Rest rest(scene);
     double worst = 0, most = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1500; ++i) {
         const phantom_tick tick = machine.tick(tip);
         ASSERT_FALSE(tick.flags & PHANTOM_TICK_UNCOVERED) << i;
         const scene::Placement now = scene.objects[0].motion->at(machine.seconds());
@@ -198,7 +199,7 @@ TEST(MovingScene, AFastBodyThatComesOverARestingTipPushesItAndIsNeverPassedThrou
     const double acceleration = 30 * std::pow(2 * pi * 4, 2);
     Rest rest(scene);
     int pushed = 0;
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         const phantom_tick tick = machine.tick(tip);
         ASSERT_FALSE(tick.flags & PHANTOM_TICK_UNCOVERED) << i;
         const scene::Placement now = scene.objects[0].motion->at(machine.seconds());
@@ -206,7 +207,7 @@ TEST(MovingScene, AFastBodyThatComesOverARestingTipPushesItAndIsNeverPassedThrou
         EXPECT_LT(length(machine.force() - wanted), acceleration * 0.005 * 0.005 + 0.01) << i;
         pushed += wanted[2] > 3.5;
     }
-    EXPECT_GT(pushed, 50);
+    EXPECT_GT(pushed, 20);
     EXPECT_EQ(machine.device().status().faults, 0U);
 }
 
@@ -283,6 +284,42 @@ TEST(MovingScene, WhatMovesAndMayComeNearIsNamedWithoutPatches)
     EXPECT_EQ(set.objects[1].flags, PHANTOM_OBJECT_MOVES);
     for (const phantom_patch& patch : set.patches)
         EXPECT_EQ(patch.object, 0U);
+}
+
+TEST(MovingObjects, WhatComesWithinReachBeforeTheNextRoundIsNear)
+{
+    scene::Scene scene = sphere_scene();
+    add_object(scene, sphere(5, 20, 40), {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 100}}, 0);
+    scene.objects[1].motion = scene::Motion{.kind = scene::Motion::Kind::oscillation,
+                                            .axis = {0, 1, 0},
+                                            .frequency = 3,
+                                            .amplitude_mm = 100,
+                                            .ramp_s = 0.2};
+    scene::LiveScene live(scene, scene::build_tree<14>(scene));
+    feeder::MovingObjects moving(scene);
+    constexpr double delay_s = 0.004, reach_mm = 3;
+    const Vector tip = {0, 40, 100};
+    int near = 0, far = 0;
+    for (double t = 0; t < 1.5; t += delay_s) {
+        live.advance(t);
+        moving.look({*live.moment(), tip, {}, delay_s}, reach_mm);
+        bool comes = false;
+        for (int part = 0; part <= 4; ++part) {
+            const scene::Placement then = scene.objects[1].motion->at(t + 0.25 * part * delay_s);
+            comes = comes || length(then.to_frame(tip) - Vector{0, 0, 100}) < 5 + reach_mm;
+        }
+        if (comes) {
+            EXPECT_EQ(moving.near(), std::vector<std::uint32_t>{1}) << t;
+            const double speed = length(live.moment()->objects[1].placement->velocity_mm_s);
+            EXPECT_DOUBLE_EQ(moving.speed_mm_s(), speed);
+            EXPECT_GE(moving.way_mm(), 0.999 * scene::way_margin * speed * delay_s);
+        }
+        near += !moving.near().empty();
+        far += moving.near().empty();
+    }
+    EXPECT_GT(near, 30);
+    EXPECT_GT(far, 200);
+    EXPECT_TRUE(feeder::MovingObjects(sphere_scene()).none());
 }
 
 /// Over the pole 512 triangles, all that a set takes, cover 5 mm. What comes at 1.5 m/s is named although no
@@ -408,7 +445,7 @@ TEST(DeformingScene, ATipBelowTheSurfaceStaysBelowItWhileItRises)
     const Vector tip = {0.5, 0, 50.5};
     machine.begin(tip);
     int inside = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1400; ++i) {
         const phantom_tick tick = machine.tick(tip);
         const double head = 50 + scene.objects[0].deformation->displacement_mm(machine.seconds());
         const double depth = head + radius_mm - tip[2];
@@ -416,7 +453,7 @@ TEST(DeformingScene, ATipBelowTheSurfaceStaysBelowItWhileItRises)
         EXPECT_NEAR(machine.force()[2], std::max(0.0, depth), 75 * 0.036 + 0.05) << i;
         inside += (tick.flags & PHANTOM_TICK_INSIDE) != 0;
     }
-    EXPECT_GT(inside, 500);
+    EXPECT_GT(inside, 200);
 }
 
 TEST(MovingScene, IsTheSameEveryTimeOnAVirtualClock)
