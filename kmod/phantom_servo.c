@@ -108,7 +108,7 @@ static void phantom_servo_prepare_frame(struct phantom_servo *servo, struct phan
 	struct phantom_effects effects;
 	struct phantom_float_prepare prepare = {
 		.set = slot->frame[frame].floats,
-		.patches = copy->sorted + part->first,
+		.patches = part->patch_count ? copy->sorted + part->first : NULL,
 		.materials = copy->materials,
 		.patch_count = part->patch_count,
 		.face_count = part->face_count,

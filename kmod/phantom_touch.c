@@ -218,7 +218,8 @@ static __always_inline bool phantom_touch_evaluate(struct phantom_servo *servo,
 		touch->proxy_nm[axis] = frame->origin_nm[axis] + job->proxy_nm[axis];
 	if (frame->effects & PHANTOM_EFFECT_FRICTION)
 		phantom_touch_take_stick(servo, frame, touch);
-	if (frame->effects & PHANTOM_EFFECT_IMPACT)
+	/* of two evaluations in a tick the second counts */
+	if ((frame->effects & PHANTOM_EFFECT_IMPACT) && slot != pass->outgoing)
 		touch->ring = job->ring_next;
 	memcpy(touch->normal_q30, job->normal_q30, sizeof(touch->normal_q30));
 	if (job->saturated) {

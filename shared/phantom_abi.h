@@ -164,7 +164,7 @@
  *   STOP          (none)   IDLE already: nothing to do, returns 0
  *   SUBMIT_SET    EINVAL   counts over the limits, an index out of range, id 0 or not larger
  *                          than the last one since open(), unknown flag, effect or kind, effects
- *                          that are not the union of the materials' and those of space, a space
+ *                          that are not the union of the materials', those of space and TIP, a space
  *                          effect in a material, damping without its effect, effect_bytes that
  *                          is not the length of the tables the effects call for, a parameter
  *                          beyond what its struct says,
@@ -575,7 +575,7 @@ struct phantom_set {
 	__u32 patch_count;
 	__u32 material_count;
 	__u32 object_count;
-	__u32 effects; /* union of the materials' effects, exactly, and those of space */
+	__u32 effects; /* union of the materials' effects, exactly, those of space, and TIP */
 	__u32 level; /* of detail; 0 is the mesh itself; another one crossfades */
 	__u32 level_error_nm; /* how far that level lies from the mesh */
 	__u32 flags; /* 0 */

@@ -75,9 +75,11 @@ static inline u64 exact_most(struct exact3 a)
 	return fixed_magnitude(a.x) | fixed_magnitude(a.y) | fixed_magnitude(a.z);
 }
 
-/* a 2^shift, rounded down; below 2^62. */
+/* a 2^shift, rounded down; below 2^62, so 0 is 0 however far it is shifted. */
 static inline s64 exact_shift(__int128 a, s32 shift)
 {
+	if (!a)
+		return 0;
 	if (shift >= 0)
 		return (s64)((u64)a << shift);
 	return shift > -128 ? (s64)(a >> -shift) : 0;

@@ -87,6 +87,7 @@ struct phantom_ring {
 	s32 energy_nj; /* E_0 */
 	s32 left_nj; /* E */
 	s32 force_un; /* of the tick before, along the normal */
+	u32 reserved; /* 0; jobs are compared as bytes, and a hole has any */
 };
 
 /*

@@ -84,7 +84,7 @@ static inline void section_sink(struct phantom_float_job *job, const struct cont
 }
 
 /* Contact, in pieces. True: it is not done. */
-LANES_INLINE bool section_contact(struct phantom_float_job *job, struct shell_state *state)
+LANES_NOINLINE bool section_contact(struct phantom_float_job *job, struct shell_state *state)
 {
 	u32 spent = 0;
 
@@ -111,15 +111,6 @@ LANES_INLINE bool section_contact(struct phantom_float_job *job, struct shell_st
 	return false;
 }
 
-/* True: not yet done. Apart from the tick, which contact alone takes without it. */
-LANES_NOINLINE bool section_feel(struct phantom_float_job *job, struct shell_state *state)
-{
-	job->more = weigh_more(job, state);
-	if (!job->more)
-		effects_apply(job, &state->out);
-	return job->more;
-}
-
 /* The way back to integers. */
 static inline void section_finish(struct phantom_float_job *job, struct contact_force *contact)
 {
@@ -139,14 +130,30 @@ static inline void section_finish(struct phantom_float_job *job, struct contact_
 	job->folded = contact->folded;
 }
 
+/*
+ * The end of a tick with effects. Apart from the other, and nothing is left to do after it: contact alone
+ * pays for one test of the mask.
+ */
+LANES_NOINLINE bool section_feel(struct phantom_float_job *job)
+{
+	struct shell_state *state = shell_state(job->set);
+
+	job->more = weigh_more(job, state);
+	if (job->more)
+		return true;
+	effects_apply(job, &state->out);
+	section_finish(job, &state->out);
+	return false;
+}
+
 static bool section_tick(struct phantom_float_job *job)
 {
 	struct shell_state *state = shell_state(job->set);
 
 	if (section_contact(job, state))
 		return true;
-	if (__builtin_expect(section_effects(job) != 0, 0) && section_feel(job, state))
-		return true;
+	if (__builtin_expect(section_effects(job) != 0, 0))
+		return section_feel(job);
 	section_finish(job, &state->out);
 	return false;
 }

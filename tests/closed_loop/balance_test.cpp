@@ -2,8 +2,8 @@
 // Every effect with a hand that presses, strokes and lifts off, at 10 kHz: what the servo does to the arm is
 // never more than what the effect's potential falls by, and its force has no step.
 //
-//   W <= U(begin) - U(now) + sum K |dx|^2 / 2 + what may be given besides
-//   |F - F before| <= K |dx| + B |dv| + J
+//   W <= U(begin) - U(now) + sum K |dx|^2 / 2 + what may be given besides; where nothing is taken either, in
+//   each tick by itself, to both sides |F - F before| <= K |dx| + B |dv| + J
 //
 // K is the largest stiffness that the effect states: a force that is held for a period does at most K |dx|^2
 // / 2 more than one that follows the tip. B is its largest viscosity, J what it changes by in a period by
@@ -22,6 +22,7 @@ struct Law {
     double stiffness = 1;                                        ///< N/mm
     double viscous = 0;                                          ///< N s/mm
     double per_tick = 0;                                         ///< N
+    bool conservative = false;                                   ///< nothing is taken either
     double lag = 0; ///< N mm, at a time, of a force that follows a filtered velocity
 };
 
@@ -46,12 +47,17 @@ class BalanceLoop : public LoopTest {
                            2 + 3 * std::cos(two_pi * 1.7 * t)};
             const double work_before = work_n_mm;
             tick();
+            const double work_of_tick = work_n_mm - work_before;
             // this tick's force came from where the arm was; it is held on the way from there
             const double way = length(minus(arm.at, from)), came = length(minus(from, last_at));
             sampled += 0.5 * law.stiffness * way * way;
             last_at = from;
-            work_of_tick = work_n_mm - work_before;
             contacts += from[2] < contact_radius_mm;
+            if (law.conservative) { // in every single tick; the forces are rounded to uN, places to nm
+                ASSERT_NEAR(work_of_tick, law.energy(from) - law.energy(arm.at),
+                            0.5 * law.stiffness * way * way + 1e-5 * way)
+                    << t << " s";
+            }
             ASSERT_LE(work_n_mm, before - law.energy(arm.at) + sampled + given() + law.lag + 1e-4)
                 << t << " s";
             if (t > 0.01) {
@@ -74,18 +80,22 @@ class BalanceLoop : public LoopTest {
     }
 
     Place last_at{0, 0, 5};
-    double work_of_tick = 0;
     int contacts = 0;
 };
 
 TEST_F(BalanceLoop, ContactAlone)
 {
-    stroke({}, 2);
+    stroke({.conservative = true}, 2);
 }
 
 TEST_F(BalanceLoop, Damping)
 {
-    stroke({.feel = {.damping_mns_m = 4000}, .stiffness = 2, .viscous = 4e-3, .lag = 0.02}, 2);
+    double least = 0;
+    stroke({.feel = {.damping_mns_m = 4000}, .stiffness = 2, .viscous = 4e-3, .lag = 0.02}, 2, [&] {
+        least = std::min(least, servo[2]);
+        return 0.0;
+    });
+    EXPECT_EQ(least, 0) << "it never pulls";
     EXPECT_LT(work_n_mm, -0.2) << "it takes";
 }
 
@@ -94,7 +104,8 @@ TEST_F(BalanceLoop, Magnet)
     const phantom_magnet magnet{500'000, 300'000};
     stroke({.feel = {.magnet = magnet},
             .energy = [&](const Place& at) { return magnet_energy(magnet, at); },
-            .stiffness = 4 * 0.3 / 0.5},
+            .stiffness = 4 * 0.3 / 0.5,
+            .conservative = true},
            2);
 }
 
@@ -112,7 +123,8 @@ TEST_F(BalanceLoop, Texture)
     const double slope = 0.06 * two_pi * 0.4 + 0.04 * two_pi * 0.336;
     stroke({.feel = {.texture = ribs},
             .energy = [&](const Place& at) { return relief_energy(ribs, at); },
-            .stiffness = 1.5 + slope * (1.5 + slope) + 1.5 * bend},
+            .stiffness = 1.5 + slope * (1.5 + slope) + 1.5 * bend,
+            .conservative = true},
            4);
 }
 
@@ -127,7 +139,8 @@ TEST_F(BalanceLoop, HeightMap)
                 [&](const Place& at) {
                     return relief_energy(map, {0, 0, 1}, at);
                 },
-            .stiffness = 1.5 + slope * (1.5 + slope) + 1.5 * bend},
+            .stiffness = 1.5 + slope * (1.5 + slope) + 1.5 * bend,
+            .conservative = true},
            4);
 }
 
@@ -158,11 +171,11 @@ TEST_F(BalanceLoop, Impact)
 
 TEST_F(BalanceLoop, Constant)
 {
-    stroke(
-        {.feel = {.constant = phantom_constant{{100'000, -50'000, -200'000}, 0}},
-         .energy =
-             [](const Place& at) { return contact_energy(at) - 0.1 * at[0] + 0.05 * at[1] + 0.2 * at[2]; }},
-        2);
+    stroke({.feel = {.constant = phantom_constant{{100'000, -50'000, -200'000}, 0}},
+            .energy =
+                [](const Place& at) { return contact_energy(at) - 0.1 * at[0] + 0.05 * at[1] + 0.2 * at[2]; },
+            .conservative = true},
+           2);
 }
 
 TEST_F(BalanceLoop, Viscosity)
@@ -180,7 +193,8 @@ TEST_F(BalanceLoop, Guide)
     const phantom_guide guide{{1'000'000, 0, 4'000'000}, {0, 0, 0}, PHANTOM_GUIDE_POINT, 200, 600'000, 0, 0};
     stroke({.feel = {.guides = {guide}},
             .energy = [&](const Place& at) { return contact_energy(at) + guide_energy(guide, at); },
-            .stiffness = 1.2},
+            .stiffness = 1.2,
+            .conservative = true},
            2);
 }
 
@@ -204,18 +218,20 @@ TEST_F(BalanceLoop, Field)
                     return contact_energy(at) + 0.5 * (0.05 * at[0] * at[0] + 0.1 * at[1] * at[1] +
                                                        0.02 * (at[2] - 5) * (at[2] - 5));
                 },
-            .stiffness = 1.1},
+            .stiffness = 1.1,
+            .conservative = true},
            2);
 }
 
-/// A ball of 2 mm over the surface: the point's potential, 2 mm higher.
+/// A ball of 0.5 mm: the point's potential, 0.5 mm higher.
 TEST_F(BalanceLoop, Tip)
 {
     stroke({.feel = {.tip = phantom_tip{500'000, 0}},
             .energy =
                 [](const Place& at) {
                     return contact_energy({at[0], at[1], at[2] - 0.5});
-                }},
+                },
+            .conservative = true},
            2);
 }
 

@@ -101,8 +101,9 @@ phantom_effects tables_of(const Feel& feel)
 }
 
 /// An impact that never ends: what a ring costs while there is one.
-constexpr phantom_ring ringing{
-    3'000'000, 10'000'000, 10'000'000, {0, 0, PHANTOM_Q30_ONE}, 80, 20'000, 400'000, 100'000, 90'000, 10'000};
+constexpr phantom_ring ringing{3'000'000, 10'000'000, 10'000'000, {0, 0, PHANTOM_Q30_ONE},
+                               80,        20'000,     400'000,    100'000,
+                               90'000,    10'000,     0};
 
 class Bench {
   public:
@@ -170,6 +171,14 @@ struct Column {
 };
 constexpr Column columns[] = {{"paper", PHANTOM_MODEL_PAPER}, {"projected/2", PHANTOM_MODEL_PROJECTED}};
 
+/// Of the tables, as they are submitted.
+std::size_t sent_bytes(const Feel& feel)
+{
+    Plane plane(1);
+    add_effects(plane, feel);
+    return plane.tables.size() * sizeof(plane.tables[0]);
+}
+
 double median_ns(Bench& bench)
 {
     std::vector<double> ns;
@@ -195,7 +204,7 @@ void measure(const char* name, const phantom_float_ops& ops, const Feel& feel, b
         if (!COUNTING) {
             std::printf("  %s %5.0f ns", column.name, median_ns(bench));
             if (&column == std::end(columns) - 1)
-                std::printf("  %5zu B\n", bench.bytes);
+                std::printf("  %5zu B sent, %3zu B prepared\n", sent_bytes(feel), bench.bytes);
             continue;
         }
         const std::string label =

@@ -78,8 +78,10 @@ struct Bounds {
             factor += PHANTOM_FRICTION_MAX_PPM * 1e-6;
             added += PHANTOM_EFFECT_STIFFNESS_MAX_MN_MM * 1e-3 * still_mm;
         }
-        if (effects.texture || effects.mask & PHANTOM_EFFECT_HEIGHT_MAP)
-            factor += 1.5 * std::sqrt(2.25 + 1);
+        // of either relief, a slope of 1
+        const double slope = (effects.texture != nullptr) + ((effects.mask & PHANTOM_EFFECT_HEIGHT_MAP) != 0);
+        if (slope > 0)
+            factor += 1.5 * std::sqrt(2.25 + slope * slope);
         if (effects.impact)
             added += PHANTOM_EFFECT_FORCE_MAX_UN * 1e-6;
         if (effects.field)

@@ -70,6 +70,25 @@ TEST_F(Friction, AtRestNothingMoves)
     }
 }
 
+TEST_F(Friction, AtRestNothingMovesWhereverItSlidTo)
+{
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (const std::uint32_t arith : {PHANTOM_ARITH_FLOAT, PHANTOM_ARITH_FIXED, PHANTOM_ARITH_DOUBLE}) {
+        for (const double stiffness : {0.5, 100.0}) { // a nm of the spring is 0.5 nN or 0.1 uN
+            feel({.friction = friction(0.7, 0.43, stiffness, 30)}, {0, 0, 2}, {}, arith, {0, 400'000'000, 0});
+            for (int place = 0; place < 60; ++place) {
+                const Place at{40 * any(random), 40 * any(random), 1.5 + any(random)};
+                for (int i = 0; i < 25; ++i) // until the filtered velocity has died away
+                    force(at);
+                const Place f = force(at);
+                for (int i = 0; i < 60; ++i)
+                    ASSERT_EQ(force(at), f) << place << ", tick " << i << ", arithmetic " << arith;
+            }
+        }
+    }
+}
+
 TEST_F(Friction, AFlickeringEncoderDoesNotMakeItCreep)
 {
     feel({.friction = friction(0.6, 0.4, 2)});
@@ -135,11 +154,17 @@ TEST_F(Friction, GoesOverToAnotherMaterialWithoutAStep)
         for (const int way : {1, -1}) {
             Place before = force({-3.0 * way, 0.5, z});
             const double normal = before[2];
+            double risen_at = 0; // where friction has risen to half of the normal force
             for (int um = -3000 * way + way; um * way <= 3000; um += way) {
                 const Place f = force({um * 1e-3, 0.5, z});
                 // and what the proxy lags behind at the edge, some um
                 ASSERT_LE(length(minus(f, before)), 5 * 1e-3 + (z < 0 ? 2e-3 : 1e-5)) << um << " um at " << z;
                 before = f;
+                if (risen_at == 0 && um > 400 && std::abs(f[0]) > 0.5 * normal)
+                    risen_at = um * 1e-3;
+            }
+            if (way > 0) { // from the border at x = 0.5 on it rises by a third of the spring
+                EXPECT_NEAR(risen_at, 0.5 + 0.4 * normal / (5.0 / 3), 0.1 * normal) << z;
             }
             EXPECT_NEAR(std::abs(before[0]), (way > 0 ? 0.6 : 0.1) * normal, 2e-3 * normal)
                 << way << ", " << z;

@@ -357,7 +357,7 @@ const BadSet bad_sets[] = {
     {"four moving objects",
      [](Plane& p) {
          for (std::uint32_t i = 0; i <= PHANTOM_MOVING_MAX; ++i)
-             mover(p).object = i;
+             mover(p).object = i + 1;
      }},
     {"neighbour in the scene of a face that moves",
      [](Plane& p) {

@@ -162,6 +162,20 @@ TEST_F(Motion, IsTheExactOneForAsLongAsASetIsBelieved)
     }
 }
 
+TEST_F(Motion, TakesARotationThatIsNotQuiteOfUnitLength)
+{
+    for (const Real scale : {1 - 0.0009L, 1 + 0.0009L}) {
+        Mover mover;
+        for (Real& part : mover.rotation)
+            part = scale / 2;
+        const phantom_object object = mover.object();
+        motion_probe_begin(&object, 0);
+        const Point x = metre();
+        const Vector want = Mover::of(object).place({Real(x[0]), Real(x[1]), Real(x[2])});
+        EXPECT_LT(apart(leave(x), want), accuracy_nm) << "it neither shrinks nor grows";
+    }
+}
+
 TEST_F(Motion, GoesOnForMinutesWithoutDrift)
 {
     // a set every 4 ms, each with its rounded pose; a tick every ms

@@ -423,47 +423,6 @@ TEST_F(Moving, ARestingObjectThatBeginsToMoveFadesOver)
     }
 }
 
-// ---- several at once
-
-TEST_F(Moving, ContactsWithSeveralFramesAddUp)
-{
-    // a plane that rests, one that moves 0.5 mm above it, and a wall that moves
-    every = 1'000'000;
-    begin({0, 0.7, 9});
-    Plane next = plane(++set_id);
-    const std::vector<phantom_patch> square = next.patches;
-    const auto add = [&](const phantom_object& object) {
-        next.objects.push_back(object);
-        for (phantom_patch patch : square) {
-            patch.object = std::uint32_t(next.objects.size() - 1);
-            patch.face += 2 * patch.object;
-            for (auto& vertex : patch.vertex)
-                vertex += 4 * patch.object;
-            for (auto& neighbour : patch.neighbour)
-                neighbour += neighbour == PHANTOM_PATCH_NONE ? 0 : 2 * patch.object;
-            next.patches.push_back(patch);
-        }
-    };
-    phantom_object side = next.objects[0];
-    side.object = 1;
-    side.rotation_q30[0] = side.rotation_q30[2] = 759250125; // its z along the scene's x
-    side.translation_nm[0] = -2 * mm;
-    add(side);
-    phantom_object rests{};
-    rests.object = 2;
-    rests.rotation_q30[0] = PHANTOM_Q30_ONE;
-    add(rests);
-    next.objects[0].translation_nm[2] = mm / 2;
-    ASSERT_EQ(feeder->submit(next), 0);
-    Place force{};
-    for (int i = 0; i < 60; ++i)
-        force = tick({0, 0.7, std::max(2.0, 9 - 0.2 * i)});
-    EXPECT_NEAR(force[2], k * (radius - 1.5) + k * (radius - 2), 1e-5);
-    EXPECT_NEAR(force[0], k * (radius - 2), 1e-5);
-    EXPECT_EQ(feeder->status().contacts, 3u);
-    EXPECT_NEAR(feeder->status().normal_q30[2], PHANTOM_Q30_ONE, 300) << "of the one that pushes most";
-}
-
 // ---- coverage
 
 TEST_F(Moving, ATipThatASurfaceCarriesOutOfItsCoverageIsUncovered)
@@ -556,28 +515,6 @@ TEST_F(Moving, DampingKnowsTheVelocityAgainstTheSurface)
         // along: nothing to damp. Else the plane comes at 100 mm/s and has come 2.5 mm
         EXPECT_NEAR(last, along ? 1.0 : 1 + 2.5 + 0.2, along ? 3e-3 : 5e-3);
     }
-}
-
-TEST_F(Moving, RevisionOfWhatMovesCarriesItsProxyAlone)
-{
-    // both below: the tip in the moving plane by 1 mm, which rises by 0.2 mm in its own frame
-    begin({0, 0, 3.5});
-    for (int i = 0; i < 90; ++i)
-        tick({0, 0, 3.5 - 0.05 * i});
-    every = 1'000'000;
-    Plane next(++set_id, half_nm, 40'000'000, {0, 0, 0}, mm / 5);
-    set_moving(next, pose(time()), now_ns);
-    cover_round(next, at);
-    next.objects[0].revision = 1;
-    ASSERT_EQ(feeder->submit(next), 0);
-    double last = feeder->status().force_un[2] * 1e-6;
-    for (int i = 0; i < 30; ++i) {
-        const double force = tick({0, 0, -0.95})[2];
-        ASSERT_LE(std::abs(force - last), 0.2 / 20 + 1e-4);
-        ASSERT_TRUE(flags & PHANTOM_TICK_INSIDE);
-        last = force;
-    }
-    EXPECT_NEAR(last, radius + 1.15, 1e-4);
 }
 
 } // namespace

@@ -2,14 +2,18 @@
 // Pictures without a display: the right size, and in them what they are of.
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "picture.hpp"
 #include "process.hpp"
+#include "scene/motion.hpp"
 #include "test_files.hpp"
+#include "view/trace.hpp"
 
 namespace phantom::view::test {
 namespace {
@@ -70,6 +74,59 @@ TEST_F(PictureWithoutDisplay, AtARowWithoutForceHasNoArrow)
     };
     // The legend's disc and the mark in the chart stay.
     EXPECT_GT(arrow_pixels("200"), 2 * arrow_pixels("0"));
+}
+
+/// Pixels that differ by more than shading does.
+std::size_t differences(const Picture& a, const Picture& b)
+{
+    std::size_t count = a.pixels.size() == b.pixels.size() ? 0 : a.pixels.size();
+    for (std::size_t i = 0; i < a.pixels.size() && i < b.pixels.size(); ++i)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            if (std::abs(a.pixels[i][channel] - b.pixels[i][channel]) > 12) {
+                ++count;
+                break;
+            }
+    return count;
+}
+
+TEST_F(PictureWithoutDisplay, OfAMovingSceneIsThatOfTheSceneWhereItHasGone)
+{
+    constexpr std::size_t row = 200;
+    const std::string trace_text = sphere_trace();
+    const auto trace_file = folder_.write("t.csv", trace_text);
+    const auto trace = read_trace(trace_file);
+    ASSERT_TRUE(trace.ok());
+    const double t_s = trace->rows[row].time_s - trace->rows.front().time_s;
+    const double frequency = 0.2 / t_s;
+    const scene::Motion swing{.kind = scene::Motion::Kind::oscillation,
+                              .axis = {0.6, 0.8, 0},
+                              .frequency = frequency,
+                              .amplitude_mm = 20,
+                              .ramp_s = 0.05};
+    const Vec3 gone = swing.at(t_s).offset_mm;
+    ASSERT_GT(length(gone), 5);
+    // Of the same name, size and number of triangles; a floor that makes the camera see both alike.
+    const auto picture_of = [&](const std::string& name, const std::string& keys) {
+        const auto scene = folder_.write(
+            "a.toml",
+            "[[object]]\nshape = \"box\"\nsize_mm = [160, 160, 2]\npose = { translation_mm = [0, 0, "
+            "-40] }\n[[object]]\nmesh = \"sphere.off\"\n" +
+                keys + "\n");
+        const Ended ended = run(fdhview({scene, "--trace", trace_file, "--at-row", std::to_string(row),
+                                         "--screenshot", folder_ / name, "--size", "800x500"}),
+                                no_display);
+        EXPECT_EQ(ended.status, 0) << ended.error;
+        return read_picture(folder_ / name);
+    };
+    const Picture moved = picture_of(
+        "moved.png", fmt::format("motion = {{ kind = \"oscillation\", direction = [3, 4, 0], amplitude_mm = "
+                                 "20, frequency_hz = {:.17g}, ramp_s = 0.05 }}",
+                                 frequency));
+    const Picture there =
+        picture_of("there.png", fmt::format("pose = {{ translation_mm = [{:.17g}, {:.17g}, {:.17g}] }}",
+                                            gone[0], gone[1], gone[2]));
+    EXPECT_LT(differences(moved, there), there.pixels.size() / 500);
+    EXPECT_GT(there.pixels.size(), 0U);
 }
 
 TEST_F(PictureWithoutDisplay, LiveTheArmPressesOnTheMiddleOfTheView)

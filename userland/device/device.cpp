@@ -174,7 +174,7 @@ int Device::call_submit(PatchSet& set)
     set.header.patches = reinterpret_cast<std::uintptr_t>(set.patches.data());
     set.header.materials = reinterpret_cast<std::uintptr_t>(set.materials.data());
     set.header.objects = reinterpret_cast<std::uintptr_t>(set.objects.data());
-    set.header.effects &= PHANTOM_EFFECTS_SPACE;
+    set.header.effects &= ~PHANTOM_EFFECTS_SURFACE;
     for (const phantom_material& material : set.materials)
         set.header.effects |= material.effects;
     set.header.effect_bytes = static_cast<__u32>(set.effect_tables.size() * sizeof(std::uint64_t));

@@ -20,7 +20,7 @@ namespace phantom::device {
 /// A set of patches ready to be submitted: owns what phantom_set points to.
 struct PatchSet {
     /// Counts and pointers are filled in by Device::submit(), and of `effects` what materials name: effects
-    /// of space stand there.
+    /// of space and TIP stand there.
     phantom_set header{};
     std::vector<phantom_patch> patches;
     std::vector<phantom_material> materials;

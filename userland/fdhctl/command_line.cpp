@@ -237,6 +237,14 @@ CLI::Option* add_device_option(CLI::App& app, std::string& node)
         ->type_name("/dev/phantom_rtN");
 }
 
+std::string listed(const std::vector<std::string>& words)
+{
+    std::string text;
+    for (const std::string& word : words)
+        text += (text.empty() ? "" : ", ") + word;
+    return text.empty() ? "none" : text;
+}
+
 Result<std::string> ask_session(const std::string& request)
 {
     Result<std::string> answer = feeder::control::request(request);

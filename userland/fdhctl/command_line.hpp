@@ -103,6 +103,9 @@ struct LevelsOption {
 /// --device: NODE of the kernel's device, empty for the first there is.
 CLI::Option* add_device_option(CLI::App& app, std::string& node);
 
+/// "hand, encoder", or "none".
+std::string listed(const std::vector<std::string>& words);
+
 /// A line to the running session; the answer, or its refusal as an Error.
 Result<std::string> ask_session(const std::string& request);
 

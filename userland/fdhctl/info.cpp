@@ -13,6 +13,8 @@
 #include "fdhctl/mesh_report.hpp"
 #include "fdhctl/view.hpp"
 #include "feeder/servo_choice.hpp"
+#include "scene/deforming_surface.hpp"
+#include "study/effect_cost.hpp"
 #include "study/tick_cost.hpp"
 
 namespace phantom::fdhctl {
@@ -38,7 +40,8 @@ struct Facts {
     std::size_t tree_bytes = 0;
     std::uint32_t rate_hz = 0;
     phantom_model model{};
-    study::TickCost cost;
+    study::TickCost cost;                   ///< with all effects
+    std::vector<study::EffectCost> effects; ///< contact alone, then each effect alone
 };
 
 /// As a session would have them; always what sets of the scene itself cover.
@@ -92,6 +95,11 @@ Result<Facts> gather(const Options& options)
     if (!cost)
         return cost.error();
     facts.cost = *cost;
+    Result<std::vector<study::EffectCost>> effects =
+        study::measure_effects(facts.scene, tree, facts.model, isa, budget);
+    if (!effects)
+        return effects.error();
+    facts.effects = std::move(*effects);
     return facts;
 }
 
@@ -134,6 +142,41 @@ std::string groups_text(const scene::Scene& scene, const scene::Object& object)
     return text;
 }
 
+std::string effect_text(const study::EffectCost& effect)
+{
+    return fmt::format("{:<11} {} {:>5.0f} ns a tick, {} bytes a set", effect.name,
+                       effect.name == study::contact_alone ? " " : "+", effect.tick_ns, effect.set_bytes);
+}
+
+nlohmann::json effects_json(const Facts& facts)
+{
+    nlohmann::json costs = nlohmann::json::array();
+    for (const study::EffectCost& effect : facts.effects)
+        costs.push_back(
+            {{"name", effect.name}, {"tick_ns", effect.tick_ns}, {"set_bytes", effect.set_bytes}});
+    return {{"called_for", facts.scene.effects_called_for()},
+            {"not_called_for", facts.scene.effects_not_called_for()},
+            {"costs", costs}};
+}
+
+std::string motion_text(const scene::Object& object)
+{
+    std::string text;
+    if (object.motion && object.motion->kind == scene::Motion::Kind::turntable)
+        text += fmt::format("{:<11} turntable, {:g} revolutions per second\n", "motion",
+                            object.motion->frequency);
+    else if (object.motion)
+        text += fmt::format("{:<11} oscillation, {:g} mm, {:g} times a second\n", "motion",
+                            object.motion->amplitude_mm, object.motion->frequency);
+    if (object.deformation)
+        text +=
+            fmt::format("{:<11} {}, {:g} mm, {:g} times a second: a new shape every {:.0f} ms\n", "deform",
+                        object.deformation->kind == scene::Deformation::Kind::drum ? "drum" : "wave",
+                        object.deformation->amplitude_mm, object.deformation->frequency_hz,
+                        1e3 * scene::revision_interval_s(object.mesh.faces.size()));
+    return text;
+}
+
 nlohmann::json json_of(const Facts& facts)
 {
     const scene::Scene& scene = facts.scene;
@@ -147,6 +190,8 @@ nlohmann::json json_of(const Facts& facts)
                            {"rims", object.rims.edges.size()},
                            {"material", scene.materials[object.material].name},
                            {"groups", groups_json(scene, object)},
+                           {"moves", object.motion.has_value()},
+                           {"deforms", object.deformation.has_value()},
                            {"report", report_json(object)}});
     for (const scene::Material& material : scene.materials) {
         nlohmann::json entry = {{"name", material.name},
@@ -156,33 +201,25 @@ nlohmann::json json_of(const Facts& facts)
             entry["damping_ns_m"] = *material.damping_ns_m;
         materials.push_back(entry);
     }
-    return {
-        {"scene", scene.file.string()},
-        {"triangles", scene.triangles()},
-        {"bounds_mm", {{"low", bounds.low}, {"high", bounds.high}}},
-        {"objects", objects},
-        {"materials", materials},
-        {"effects",
-         {{"called_for", scene.effects_called_for()}, {"not_called_for", scene.effects_not_called_for()}}},
-        {"rate_hz", facts.rate_hz},
-        {"model", device::model_text(facts.model)},
-        {"tick",
-         {{"isa", device::isa_name(facts.cost.isa)},
-          {"patches", facts.cost.patches},
-          {"median_ns", facts.cost.tick_ns.median},
-          {"p99_ns", facts.cost.tick_ns.p99},
-          {"period_percent", facts.cost.tick_ns.median * 1e-7 * facts.rate_hz}}},
-        {"tree", {{"build_ms", facts.build_ms}, {"bytes", facts.tree_bytes}}},
-        {"coverage", coverage_json(facts.levels.finest, facts.pace)},
-        {"levels", levels_json(scene, facts.levels, facts.pace)}};
-}
-
-std::string joined(const std::vector<std::string>& words)
-{
-    std::string text;
-    for (const std::string& word : words)
-        text += (text.empty() ? "" : ", ") + word;
-    return text.empty() ? "none" : text;
+    return {{"scene", scene.file.string()},
+            {"triangles", scene.triangles()},
+            {"bounds_mm", {{"low", bounds.low}, {"high", bounds.high}}},
+            {"objects", objects},
+            {"materials", materials},
+            {"effects", effects_json(facts)},
+            {"device",
+             {{"simulated", scene.device.simulated()}, {"not_simulated", scene.device.not_simulated()}}},
+            {"rate_hz", facts.rate_hz},
+            {"model", device::model_text(facts.model)},
+            {"tick",
+             {{"isa", device::isa_name(facts.cost.isa)},
+              {"patches", facts.cost.patches},
+              {"median_ns", facts.cost.tick_ns.median},
+              {"p99_ns", facts.cost.tick_ns.p99},
+              {"period_percent", facts.cost.tick_ns.median * 1e-7 * facts.rate_hz}}},
+            {"tree", {{"build_ms", facts.build_ms}, {"bytes", facts.tree_bytes}}},
+            {"coverage", coverage_json(facts.levels.finest, facts.pace)},
+            {"levels", levels_json(scene, facts.levels, facts.pace)}};
 }
 
 std::string text_of(const Facts& facts)
@@ -202,7 +239,7 @@ std::string text_of(const Facts& facts)
                             object.file.empty() ? "shape" : object.file.string(),
                             scene.materials[object.material].name);
         text += report_text(object);
-        text += groups_text(scene, object);
+        text += groups_text(scene, object) + motion_text(object);
         if (!object.fans.fans.empty())
             add("fans", fmt::format("{} over creases and their corners", object.fans.fans.size()));
         if (!object.rims.edges.empty())
@@ -219,8 +256,12 @@ std::string text_of(const Facts& facts)
                         material.radius_mm,
                         material.damping_ns_m ? fmt::format(", damping {:g} N*s/m", *material.damping_ns_m)
                                               : ""));
-    add("effects", "called for: " + joined(scene.effects_called_for()) +
-                       "; not called for, and costing nothing: " + joined(scene.effects_not_called_for()));
+    add("effects", "called for: " + listed(scene.effects_called_for()) +
+                       "; not called for, and costing nothing: " + listed(scene.effects_not_called_for()));
+    for (const study::EffectCost& effect : facts.effects)
+        add("", effect_text(effect));
+    add("device", "simulated by trace: " + listed(scene.device.simulated()) +
+                      "; not named, and not simulated: " + listed(scene.device.not_simulated()));
     add("hierarchy", fmt::format("FDH14, {:.1f} MB, built in {:.0f} ms",
                                  static_cast<double>(facts.tree_bytes) * 1e-6, facts.build_ms));
     add("coverage", coverage_text(facts.levels.finest, facts.pace));

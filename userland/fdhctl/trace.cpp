@@ -45,6 +45,7 @@ nlohmann::json summary_json(const study::TraceSummary& sum)
             {"force_step_max_n", sum.force_step_max_n},
             {"query_median_us", sum.query_median_us},
             {"tick_median_ns", sum.tick_median_ns},
+            {"simulated", sum.simulated},
             {"faults", sum.faults}};
 }
 
@@ -54,11 +55,12 @@ std::string summary_text(const study::TraceSummary& sum)
                        "ticks     {}, in contact {}, inside {}, not covered {}\n"
                        "sets      {}, at most {} patches, {} patches refused, {} values saturated\n"
                        "force     at most {:.4g} N, largest step between ticks {:.4g} N, faults: {}\n"
+                       "device    simulated: {}\n"
                        "median    query {:.2f} us, tick {:.0f} ns (the whole tick, from outside)\n",
                        sum.model, sum.isa, sum.ticks, sum.contact_ticks, sum.inside_ticks,
                        sum.uncovered_ticks, sum.sets, sum.patches_max, sum.refused, sum.saturated,
-                       sum.force_max_n, sum.force_step_max_n, sum.faults, sum.query_median_us,
-                       sum.tick_median_ns);
+                       sum.force_max_n, sum.force_step_max_n, sum.faults, listed(sum.simulated),
+                       sum.query_median_us, sum.tick_median_ns);
 }
 
 std::uint32_t isa_number(const std::string& word)

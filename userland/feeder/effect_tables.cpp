@@ -33,8 +33,9 @@ static_assert(named_mm - window_corner_mm - 500.0 > scene::range::region_mm.high
 static_assert(named_mm - 1.733 * 1147.0 > scene::range::region_mm.high);
 
 /// Effects that have tables, of one material.
-constexpr std::uint32_t surface_tables =
-    PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION | PHANTOM_EFFECT_TEXTURE;
+constexpr std::uint32_t surface_tables = PHANTOM_EFFECT_MAGNET | PHANTOM_EFFECT_FRICTION |
+                                         PHANTOM_EFFECT_TEXTURE | PHANTOM_EFFECT_HEIGHT_MAP |
+                                         PHANTOM_EFFECT_IMPACT;
 
 __u32 scaled(double value, double units)
 {
@@ -82,6 +83,37 @@ void append(const T& entry, std::vector<std::uint64_t>& tables)
     std::memcpy(&tables[before], &entry, sizeof entry);
 }
 
+/// Numbers behind a struct, filled up to whole words.
+void append_numbers(const std::vector<__s32>& numbers, std::vector<std::uint64_t>& tables)
+{
+    const std::size_t before = tables.size();
+    tables.resize(before + (numbers.size() + 1) / 2);
+    std::memcpy(&tables[before], numbers.data(), numbers.size() * sizeof(__s32));
+}
+
+void append_map(const scene::HeightMap& map, std::vector<std::uint64_t>& tables)
+{
+    const scene::GreyImage& image = map.samples;
+    phantom_height_map out{};
+    out.columns = image.width;
+    out.rows = image.height;
+    out.spacing_nm = scaled(map.spacing_mm, nm_per_mm);
+    out.amplitude_nm = scaled(0.5 * map.height_mm, nm_per_mm);
+    std::vector<__s32> heights;
+    for (std::uint32_t row = image.height; row-- > 0;) // an image begins at its upper edge
+        for (std::uint32_t column = 0; column < image.width; ++column)
+            heights.push_back(static_cast<__s32>(
+                std::lround((image.at(column, row) - 0.5) * 2.0 * static_cast<double>(out.amplitude_nm))));
+    append(out, tables);
+    append_numbers(heights, tables);
+}
+
+phantom_impact entry_of(const scene::Impact& impact)
+{
+    return {scaled(impact.gain_ns_m, 1e3), scaled(impact.force_n, 1e6), scaled(impact.frequency_hz, 1.0),
+            scaled(impact.decay_ms, 1e3)};
+}
+
 template <class T>
 void append_counted(const std::vector<T>& entries, std::vector<std::uint64_t>& tables)
 {
@@ -101,7 +133,9 @@ phantom_material contact_of(const scene::Material& material)
     out.effects = (material.damping_ns_m ? PHANTOM_EFFECT_DAMPING : 0U) |
                   (material.magnet ? PHANTOM_EFFECT_MAGNET : 0U) |
                   (material.friction ? PHANTOM_EFFECT_FRICTION : 0U) |
-                  (material.texture ? PHANTOM_EFFECT_TEXTURE : 0U);
+                  (material.texture ? PHANTOM_EFFECT_TEXTURE : 0U) |
+                  (material.height_map ? PHANTOM_EFFECT_HEIGHT_MAP : 0U) |
+                  (material.impact ? PHANTOM_EFFECT_IMPACT : 0U);
     return out;
 }
 
@@ -164,6 +198,33 @@ std::optional<phantom_guide> entry_of(const scene::Guide& guide, const Vec3& ori
     return out;
 }
 
+/// Nothing where it is out of reach.
+void append_field(const scene::ForceField& field, const Vec3& origin, std::vector<std::uint64_t>& tables)
+{
+    const scene::ForceGrid& grid = field.grid;
+    const auto corner = named(grid.corner_mm, origin, true);
+    if (!corner)
+        return;
+    phantom_field out{};
+    const auto at = to_nanometres(*corner);
+    std::copy(at.begin(), at.end(), out.corner_nm);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.spacing_nm[axis] = scaled(grid.spacing_mm[axis], nm_per_mm);
+        out.nodes[axis] = grid.nodes[axis];
+    }
+    const double side = grid.shortest_side_mm();
+    // Half a nm per step of the grid is what the module's own side may be shorter by.
+    out.border_nm =
+        std::max<__u32>(scaled(std::min(field.border_mm.value_or(0.25 * side), 0.4999 * side), nm_per_mm),
+                        PHANTOM_BORDER_MIN_NM);
+    std::vector<__s32> forces;
+    for (const auto& force : grid.force_n)
+        for (const double part : force)
+            forces.push_back(static_cast<__s32>(std::lround(part * field.scale * 1e6)));
+    append(out, tables);
+    append_numbers(forces, tables);
+}
+
 } // namespace
 
 EffectTables::EffectTables(const scene::Scene& scene)
@@ -187,6 +248,10 @@ void EffectTables::make_surfaces()
             append(entry_of(*material.friction, material.stiffness_n_mm), surface.friction);
         if (material.texture)
             append(entry_of(*material.texture), surface.texture);
+        if (material.height_map)
+            append_map(*material.height_map, surface.height_map);
+        if (material.impact)
+            append(entry_of(*material.impact), surface.impact);
         surfaces_.push_back(std::move(surface));
     }
 }
@@ -234,32 +299,39 @@ void EffectTables::make_space(const std::array<std::int64_t, 3>& origin_nm)
     Vec3 origin;
     for (std::size_t axis = 0; axis < 3; ++axis)
         origin[axis] = static_cast<double>(origin_nm[axis]) / nm_per_mm;
-    std::optional<phantom_constant> constant;
+    std::optional<Vec3> force;
     std::vector<phantom_viscosity> regions;
     std::vector<phantom_guide> guides;
-    Vec3 sum{};
+    std::vector<std::uint64_t> field, tip;
     for (const scene::SpaceEffect& effect : effects_) {
-        if (const auto* force = std::get_if<scene::ConstantForce>(&effect.law)) {
-            constant.emplace();
-            sum = sum + force->force_n;
+        if (const auto* constant = std::get_if<scene::ConstantForce>(&effect.law)) {
+            force = force.value_or(Vec3{}) + constant->force_n;
         } else if (const auto* viscosity = std::get_if<scene::Viscosity>(&effect.law)) {
             if (const auto entry = entry_of(*viscosity, origin))
                 regions.push_back(*entry);
-        } else if (const auto entry = entry_of(std::get<scene::Guide>(effect.law), origin)) {
-            guides.push_back(*entry);
+        } else if (const auto* guide = std::get_if<scene::Guide>(&effect.law)) {
+            if (const auto entry = entry_of(*guide, origin))
+                guides.push_back(*entry);
+        } else if (const auto* grid = std::get_if<scene::ForceField>(&effect.law)) {
+            append_field(*grid, origin, field);
+        } else {
+            append(phantom_tip{scaled(std::get<scene::BallTip>(effect.law).radius_mm, nm_per_mm), 0}, tip);
         }
     }
-    space_mask_ = (constant ? PHANTOM_EFFECT_CONSTANT : 0U) |
-                  (regions.empty() ? 0U : PHANTOM_EFFECT_VISCOSITY) |
-                  (guides.empty() ? 0U : PHANTOM_EFFECT_GUIDE);
+    space_mask_ = (force ? PHANTOM_EFFECT_CONSTANT : 0U) | (regions.empty() ? 0U : PHANTOM_EFFECT_VISCOSITY) |
+                  (guides.empty() ? 0U : PHANTOM_EFFECT_GUIDE) | (field.empty() ? 0U : PHANTOM_EFFECT_FIELD) |
+                  (tip.empty() ? 0U : PHANTOM_EFFECT_TIP);
     space_.clear();
-    if (constant) {
+    if (force) {
+        phantom_constant constant{};
         for (std::size_t axis = 0; axis < 3; ++axis)
-            constant->force_un[axis] = static_cast<__s32>(std::llround(sum[axis] * 1e6));
-        append(*constant, space_);
+            constant.force_un[axis] = static_cast<__s32>(std::llround((*force)[axis] * 1e6));
+        append(constant, space_);
     }
     append_counted(regions, space_);
     append_counted(guides, space_);
+    space_.insert(space_.end(), field.begin(), field.end());
+    space_.insert(space_.end(), tip.begin(), tip.end());
     space_origin_nm_ = origin_nm;
     space_made_ = true;
 }
@@ -271,7 +343,8 @@ void EffectTables::fill(std::span<const std::uint32_t> materials, device::PatchS
     for (const std::uint32_t material : materials)
         named |= surfaces_[material].contact.effects;
     if (named & surface_tables) {
-        for (const auto table : {&Surface::magnet, &Surface::friction, &Surface::texture})
+        for (const auto table : {&Surface::magnet, &Surface::friction, &Surface::texture,
+                                 &Surface::height_map, &Surface::impact})
             for (const std::uint32_t material : materials) {
                 const auto& entry = surfaces_[material].*table;
                 out.effect_tables.insert(out.effect_tables.end(), entry.begin(), entry.end());

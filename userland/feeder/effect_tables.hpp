@@ -37,7 +37,7 @@ class EffectTables {
     /// A material, and each of its effects' tables.
     struct Surface {
         phantom_material contact{};
-        std::vector<std::uint64_t> magnet, friction, texture;
+        std::vector<std::uint64_t> magnet, friction, texture, height_map, impact;
     };
     struct Ramp {
         double from = 0, to = 0; ///< mN/mm, mN s/m

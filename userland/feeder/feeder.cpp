@@ -156,7 +156,7 @@ struct Feeder::Impl {
         when.moment = moment.get();
         if (!moving.none()) {
             const phantom_status status = device.status();
-            moving.look({moment, tip, velocity_mm_s(status), 1.0 / std::max(1.0, options.rate_hz)},
+            moving.look({*moment, tip, velocity_mm_s(status), 1.0 / std::max(1.0, options.rate_hz)},
                         radius_mm * (1.0 + margin_of_radius));
             when.near = moving.near();
         }
@@ -244,7 +244,6 @@ struct Feeder::Impl {
         }
         if (has_previous)
             need = std::max(need, distance(previous, centre));
-        need = std::max(need, moving.previous_mm(centre));
         return {centre, need};
     }
 

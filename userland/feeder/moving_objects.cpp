@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/coverage.hpp"
+
 namespace phantom::feeder {
 
 MovingObjects::MovingObjects(const scene::Scene& scene)
@@ -23,40 +25,36 @@ MovingObjects::MovingObjects(const scene::Scene& scene)
         bodies_.push_back({i, turned + pose.translation - object.motion->centre_mm,
                            0.5 * length(bounds.high - bounds.low) + swell_mm});
     }
-    tips_now_.resize(bodies_.size());
+}
+
+MovingObjects::Reach MovingObjects::farthest() const
+{
+    Reach out;
+    for (const Body& body : bodies_)
+        if (const double mm = length(body.centre_mm) + body.radius_mm; mm > out.mm)
+            out = {body.object, mm};
+    return out;
 }
 
 void MovingObjects::look(const TipRound& round, double reach_mm)
 {
-    round_ = round;
     near_.clear();
-    near_previous_.clear();
     way_mm_ = speed_mm_s_ = 0;
     const bool first = tips_.empty();
+    tips_.resize(bodies_.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const scene::Placement& now = placement(bodies_[i].object);
+        const scene::Placement& now = *round.moment.objects[bodies_[i].object].placement;
         const Vec3 tip = now.to_frame(round.tip_mm);
         const double speed = length(round.velocity_mm_s - now.velocity_at(round.tip_mm));
-        const Vec3 previous = first ? tip : tips_[i];
-        const double way = std::max(length(tip - previous), speed * round.delay_s);
-        tips_now_[i] = tip;
-        // Until the next round, and the one after it, which is only then known.
-        if (length(tip - bodies_[i].centre_mm) > bodies_[i].radius_mm + reach_mm + 2 * way)
+        const double come = first ? 0.0 : length(tip - tips_[i]);
+        const double way = scene::way_margin * std::max(come, speed * round.delay_s);
+        tips_[i] = tip;
+        if (length(tip - bodies_[i].centre_mm) > bodies_[i].radius_mm + reach_mm + way)
             continue;
         near_.push_back(bodies_[i].object);
-        near_previous_.push_back(previous);
         way_mm_ = std::max(way_mm_, way);
         speed_mm_s_ = std::max(speed_mm_s_, speed);
     }
-    tips_ = tips_now_;
-}
-
-double MovingObjects::previous_mm(const Vec3& centre_mm) const
-{
-    double farthest = 0;
-    for (std::size_t i = 0; i < near_.size(); ++i)
-        farthest = std::max(farthest, length(placement(near_[i]).to_frame(centre_mm) - near_previous_[i]));
-    return farthest;
 }
 
 } // namespace phantom::feeder

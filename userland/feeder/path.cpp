@@ -2,15 +2,15 @@
 #include "feeder/path.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include "base/csv_line.hpp"
 
 namespace phantom::feeder {
 
@@ -19,49 +19,16 @@ namespace {
 /// Positions cross the border as 64-bit nm: 9.2e12 mm.
 constexpr double coordinate_max_mm = 9e12;
 
-std::string_view trimmed(std::string_view text)
-{
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && blank(text.front()))
-        text.remove_prefix(1);
-    while (!text.empty() && blank(text.back()))
-        text.remove_suffix(1);
-    return text;
-}
-
-std::vector<std::string_view> cells_of(std::string_view line)
-{
-    std::vector<std::string_view> cells;
-    for (;;) {
-        const std::size_t comma = line.find(',');
-        cells.push_back(trimmed(line.substr(0, comma)));
-        if (comma == std::string_view::npos)
-            return cells;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-std::optional<double> number_of(std::string_view cell)
-{
-    if (!cell.empty() && cell.front() == '+')
-        cell.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc() || end != cell.data() + cell.size())
-        return std::nullopt;
-    return value;
-}
-
 /// One row, or what is wrong with it.
 Result<PathRow> row_of(std::string_view line, const std::string& where)
 {
     constexpr const char* names[] = {"time_s", "x_mm", "y_mm", "z_mm"};
-    const auto cells = cells_of(line);
+    const auto cells = csv::cells_of(line);
     if (cells.size() != 4)
         return Error{where, fmt::format("expected 4 columns ({}), found {}", path_header, cells.size())};
     std::array<double, 4> values{};
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::optional<double> value = number_of(cells[i]);
+        const std::optional<double> value = csv::number_of(cells[i]);
         if (!value)
             return Error{where, fmt::format("{}: expected a number, found '{}'", names[i], cells[i])};
         if (!std::isfinite(*value))
@@ -93,7 +60,7 @@ Result<Path> read_path(const std::filesystem::path& file)
     bool header = false;
     while (std::getline(stream, line)) {
         ++number;
-        const std::string_view text = trimmed(line);
+        const std::string_view text = csv::trimmed(line);
         const std::string where = fmt::format("{}:{}", name, number);
         if (!header) {
             if (text != path_header)

@@ -7,6 +7,7 @@
 
 #include "feeder/effect_tables.hpp"
 #include "feeder/feeder.hpp"
+#include "feeder/moving_objects.hpp"
 
 namespace phantom::feeder {
 
@@ -443,6 +444,14 @@ Status check_reach(const scene::Scene& scene, const FeederOptions& options)
                          "take a smaller budget than all"};
         return success();
     }
+    // The tip of a set is that near to what it touches, and where an object moves it is so in its frame.
+    constexpr double frame_mm = PHANTOM_OBJECT_REACH_NM / nm_per_mm;
+    const double frame_max_mm = frame_mm - 4.0 * options.search_radius_mm;
+    if (const auto [object, mm] = MovingObjects(scene).farthest(); mm > frame_max_mm)
+        return Error{
+            fmt::format("{}: object {}", file, scene.objects[object].name),
+            fmt::format("reaches {:.0f} mm from the centre of its motion, a set {:.0f} mm", mm, frame_max_mm),
+            "take a centre_mm that is nearer to it, or --unit or --fit if it should be smaller"};
     const double longest_mm = edge_max_mm(options);
     for (const scene::Object& object : scene.objects) {
         // A hundredth for the rounding of what the report says.

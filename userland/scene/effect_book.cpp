@@ -15,6 +15,7 @@ namespace phantom::scene {
 namespace {
 
 using Words = EffectBook::Words;
+using Load = std::function<Status(const std::filesystem::path&)>;
 
 /// What is given, for a list.
 class Listed : public Parameters {
@@ -42,6 +43,11 @@ class Listed : public Parameters {
         values.push_back({std::string(key), {}, std::string(words[value])});
     }
 
+    void file(std::string_view key, std::string& name, const Load&) override
+    {
+        values.push_back({std::string(key), {}, name});
+    }
+
     std::vector<EffectBook::Value> values;
 };
 
@@ -53,6 +59,8 @@ class Changed : public Parameters {
 
     void number(std::string_view key, double& value, const Range& range, Need need) override
     {
+        if (need == Need::fixed)
+            return stays(key);
         take(key, {&value, 1}, range, need, range.text);
     }
     void number(std::string_view key, std::optional<double>& value, const Range& range) override
@@ -76,10 +84,12 @@ class Changed : public Parameters {
         for (std::size_t axis = 0; axis < 3; ++axis)
             value[axis] = given[axis] / length;
     }
-    void word(std::string_view key, std::size_t&, std::span<const std::string_view>) override
+    void word(std::string_view key, std::size_t&, std::span<const std::string_view>) override { stays(key); }
+    void file(std::string_view key, std::string&, const Load&) override
     {
-        if (find(key))
-            add(key, "stays as the scene has it");
+        stays(key);
+        if (fresh_)
+            add(key, "is a file, expected in the scene's own");
     }
 
     void add(std::string_view key, const std::string& what)
@@ -97,6 +107,12 @@ class Changed : public Parameters {
     }
 
   private:
+    void stays(std::string_view key)
+    {
+        if (find(key))
+            add(key, "stays as the scene has it");
+    }
+
     const std::string* find(std::string_view key)
     {
         keys_.emplace_back(key);
@@ -164,8 +180,8 @@ Status change_slot(const std::string& name, std::optional<Effect>& slot, const W
 
 constexpr auto nothing = [](const auto&) { return std::optional<Contradiction>(); };
 
-constexpr std::array<std::string_view, 4> surface_effects = {"magnet", "friction", "texture",
-                                                             "texture.second"};
+constexpr std::array<std::string_view, 6> surface_effects = {"magnet",         "friction",   "texture",
+                                                             "texture.second", "height_map", "impact"};
 
 /// Calls with each of a material's effects that there are, by name.
 template <class Material_, class Call>
@@ -180,6 +196,10 @@ void for_each_effect(Material_& material, Call&& call)
         if (material.texture->second)
             call("texture.second", *material.texture->second);
     }
+    if (material.height_map)
+        call("height_map", *material.height_map);
+    if (material.impact)
+        call("impact", *material.impact);
 }
 
 template <class Effect>
@@ -266,6 +286,12 @@ Status EffectBook::change_surface(Material& material, const std::string& effect,
     if (effect == "friction")
         return change_slot(name, material.friction, words,
                            [](const Friction& friction) { return contradiction(friction); });
+    if (effect == "height_map")
+        return change_slot(name, material.height_map, words,
+                           [](const HeightMap& map) { return contradiction(map); });
+    if (effect == "impact")
+        return change_slot(name, material.impact, words,
+                           [](const Impact& impact) { return contradiction(impact); });
     const bool is_first = effect == "texture";
     if (!is_first && !material.texture)
         return Error{"effect " + name, fmt::format("{0}.texture is missing, expected it before its second "
@@ -353,6 +379,10 @@ std::vector<Material> EffectBook::materials() const
             material.texture->second.reset();
         if (is_off(material, "texture"))
             material.texture.reset();
+        if (is_off(material, "height_map"))
+            material.height_map.reset();
+        if (is_off(material, "impact"))
+            material.impact.reset();
     }
     return out;
 }

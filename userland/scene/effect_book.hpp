@@ -2,8 +2,8 @@
 // What a scene feels like while it is touched: materials and effects by name, changed by words.
 //
 //   MATERIAL                 stiffness_n_mm, damping_ns_m
-//   MATERIAL.EFFECT          magnet, friction, texture; texture.second is the other grating
-//   NAME                     of an [effect.NAME]
+//   MATERIAL.EFFECT          magnet, friction, texture, height_map, impact; texture.second is the other
+//   grating NAME                     of an [effect.NAME]
 //
 // Keys, ranges and what belongs together are those of scene files (effect_parameters.hpp).
 #pragma once

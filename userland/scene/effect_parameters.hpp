@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,7 +17,8 @@
 
 namespace phantom::scene {
 
-enum class Need { required, optional };
+/// fixed: required, and stays as it is while it runs.
+enum class Need { required, optional, fixed };
 
 /// Reads, changes or shows parameters. What is optional and not given keeps its value.
 class Parameters {
@@ -29,6 +32,9 @@ class Parameters {
     virtual void direction(std::string_view key, std::array<double, 3>& value, Need need) = 0;
     /// Index of one of the words. What it says decides on other parameters: fixed while it runs.
     virtual void word(std::string_view key, std::size_t& value, std::span<const std::string_view> words) = 0;
+    /// A file that `load` takes in; a relative path starts at the folder of the scene file. Fixed.
+    virtual void file(std::string_view key, std::string& name,
+                      const std::function<Status(const std::filesystem::path&)>& load) = 0;
 };
 
 /// Stiffness and damping: what may change of a material itself. Its contact radius decides on rims and reach.
@@ -36,9 +42,13 @@ void parameters(Material& material, Parameters& out);
 void parameters(Magnet& magnet, Parameters& out);
 void parameters(Friction& friction, Parameters& out);
 void parameters(Grating& grating, Parameters& out);
+void parameters(HeightMap& map, Parameters& out);
+void parameters(Impact& impact, Parameters& out);
 void parameters(ConstantForce& constant, Parameters& out);
 void parameters(Viscosity& viscosity, Parameters& out);
 void parameters(Guide& guide, Parameters& out);
+void parameters(ForceField& field, Parameters& out);
+void parameters(BallTip& tip, Parameters& out);
 
 /// Each in its range, and yet together they make no sense.
 struct Contradiction {
@@ -50,15 +60,23 @@ std::optional<Contradiction> contradiction(const Magnet& magnet, const Material&
 std::optional<Contradiction> contradiction(const Friction& friction);
 /// `other`: the grating that it is added to, if any.
 std::optional<Contradiction> contradiction(const Grating& grating, const Grating* other);
+std::optional<Contradiction> contradiction(const HeightMap& map);
+std::optional<Contradiction> contradiction(const Impact& impact);
 std::optional<Contradiction> contradiction(const ConstantForce& constant);
 std::optional<Contradiction> contradiction(const Viscosity& viscosity);
 std::optional<Contradiction> contradiction(const Guide& guide);
+std::optional<Contradiction> contradiction(const ForceField& field);
+std::optional<Contradiction> contradiction(const BallTip& tip);
 
 /// Kinds of SpaceEffect, in the order of its variant.
-inline constexpr std::array<std::string_view, 3> space_kinds = {"constant", "viscosity", "guide"};
+inline constexpr std::array<std::string_view, 5> space_kinds = {"constant", "viscosity", "guide", "field",
+                                                                "tip"};
 
-/// What sets carry: effects of one kind (constant forces are added up).
+/// What sets carry of one kind: any number of constant forces, which are added up, so many media and so many
+/// guides, and one of the others.
 inline constexpr std::size_t regions_max = 8; ///< PHANTOM_REGIONS_MAX
+/// Samples of all height maps together; they and a field fit into PHANTOM_EFFECT_BYTES_MAX.
+inline constexpr std::size_t map_samples_max = 16384;
 
 /// That law with its defaults. kind: one of space_kinds.
 SpaceEffect make_space_effect(std::string name, std::string_view kind);

@@ -8,6 +8,9 @@
 #include <string>
 #include <variant>
 
+#include "scene/force_grid.hpp"
+#include "scene/shapes/grey_image.hpp"
+
 namespace phantom::scene {
 
 /// The first range_mm of the contact radius pull towards the surface.
@@ -37,6 +40,24 @@ struct Texture {
     std::optional<Grating> second{};
 };
 
+/// A tile of heights, repeated through the scene's space and laid on surfaces along each axis.
+struct HeightMap {
+    std::string image;     ///< file of the samples
+    GreyImage samples;     ///< 4, 8, ... 64 each way; its upper edge is at the larger y or z
+    double spacing_mm = 1; ///< from sample to sample
+    double height_mm = 0;  ///< of white over black; grey is the surface itself
+    /// Largest changes from sample to sample along rows and along columns, round the tile; white is 1.
+    [[nodiscard]] double steepest() const;
+};
+
+/// What rings when contact begins: min(gain v, force) exp(-t / decay) sin(2 pi frequency t).
+struct Impact {
+    double gain_ns_m = 0;
+    double frequency_hz = 0;
+    double decay_ms = 0;
+    double force_n = 0; ///< the largest amplitude
+};
+
 /// Gravity, wind.
 struct ConstantForce {
     std::array<double, 3> force_n{};
@@ -62,12 +83,25 @@ struct Guide {
     std::optional<double> reach_mm{}; ///< it lets go over the last quarter of that distance; else never
 };
 
+/// Forces on a grid, between its nodes trilinear.
+struct ForceField {
+    std::string file;
+    ForceGrid grid;
+    double scale = 1;                  ///< of all forces
+    std::optional<double> border_mm{}; ///< over which it comes in; else a quarter of its shortest side
+};
+
+/// A ball instead of a point: contact radii count so much more.
+struct BallTip {
+    double radius_mm = 0;
+};
+
 /// [effect.NAME]
 struct SpaceEffect {
     std::string name;
-    std::variant<ConstantForce, Viscosity, Guide> law;
+    std::variant<ConstantForce, Viscosity, Guide, ForceField, BallTip> law;
 
-    /// "constant", "viscosity", "guide"
+    /// "constant", "viscosity", "guide", "field", "tip"
     [[nodiscard]] const char* kind() const;
 };
 

@@ -13,6 +13,8 @@ namespace phantom::scene {
 
 namespace {
 
+using Load = std::function<Status(const std::filesystem::path&)>;
+
 /// The names alone.
 class KeyList : public Parameters {
   public:
@@ -27,6 +29,7 @@ class KeyList : public Parameters {
     {
         keys.push_back(key);
     }
+    void file(std::string_view key, std::string&, const Load&) override { keys.push_back(key); }
 
     std::vector<std::string_view> keys;
 };
@@ -44,7 +47,7 @@ std::vector<std::string_view> keys_of(const Effect& effect, std::vector<std::str
 /// From a table; whatever is at fault is told, and counted.
 class FileParameters : public Parameters {
   public:
-    explicit FileParameters(TomlReader& reader) : reader_(reader) {}
+    FileParameters(TomlReader& reader, const std::filesystem::path& scene) : reader_(reader), scene_(scene) {}
     [[nodiscard]] bool sound() const { return sound_; }
 
     void number(std::string_view key, double& value, const Range& range, Need need) override
@@ -87,12 +90,25 @@ class FileParameters : public Parameters {
             sound_ = false;
     }
 
+    void file(std::string_view key, std::string& name, const Load& load) override
+    {
+        if (!is_there(key, Need::required, "a file"))
+            return;
+        const auto given = reader_.text(key);
+        if (given)
+            name = *given;
+        const Status status = given ? load(scene_.parent_path() / *given) : success();
+        if (!status)
+            reader_.fault(key, status.error().text());
+        sound_ = sound_ && given && status;
+    }
+
   private:
     bool is_there(std::string_view key, Need need, std::string_view expected)
     {
         if (reader_.has(key))
             return true;
-        if (need == Need::required) {
+        if (need != Need::optional) {
             reader_.fault(key, fmt::format("is missing, expected {}", expected));
             sound_ = false;
         }
@@ -108,17 +124,25 @@ class FileParameters : public Parameters {
     }
 
     TomlReader& reader_;
+    const std::filesystem::path& scene_;
     bool sound_ = true;
+};
+
+/// A table of a scene file, and what messages call it.
+struct Place {
+    const toml::table& table;
+    std::string path;
+    const std::filesystem::path& scene;
+    Faults& faults;
 };
 
 /// An effect's table, but for what `more` names. `check` is asked only if each parameter is sound by itself.
 template <class Effect, class Check>
-Effect read_effect(const toml::table& table, const std::string& path, Faults& faults,
-                   std::vector<std::string_view> more, Effect effect, Check&& check)
+Effect read_effect(const Place& at, std::vector<std::string_view> more, Effect effect, Check&& check)
 {
     const auto keys = keys_of(effect, std::move(more));
-    TomlReader reader(table, path, keys, keys, faults);
-    FileParameters from(reader);
+    TomlReader reader(at.table, at.path, keys, keys, at.faults);
+    FileParameters from(reader, at.scene);
     parameters(effect, from);
     if (const auto wrong = from.sound() ? check(effect) : std::nullopt)
         reader.fault(wrong->key, wrong->what);
@@ -126,64 +150,71 @@ Effect read_effect(const toml::table& table, const std::string& path, Faults& fa
 }
 
 template <class Effect>
-Effect read_effect(const toml::table& table, const std::string& path, Faults& faults,
-                   std::vector<std::string_view> more = {})
+Effect read_effect(const Place& at, std::vector<std::string_view> more = {})
 {
-    return read_effect(table, path, faults, std::move(more), Effect{},
+    return read_effect(at, std::move(more), Effect{},
                        [](const Effect& effect) { return contradiction(effect); });
 }
 
-Texture read_texture(const toml::table& table, const std::string& path, Faults& faults)
+Texture read_texture(const Place& at)
 {
     Texture out;
-    out.first = read_effect(table, path, faults, {"second"}, Grating{},
+    out.first = read_effect(at, {"second"}, Grating{},
                             [](const Grating& grating) { return contradiction(grating, nullptr); });
-    const toml::node* second = table.get("second");
+    const toml::node* second = at.table.get("second");
     if (second && !second->is_table())
-        faults.add(second->source(),
-                   fmt::format("{}second: is {}, expected a table: another grating", path, shown(*second)));
+        at.faults.add(second->source(), fmt::format("{}second: is {}, expected a table: another grating",
+                                                    at.path, shown(*second)));
     else if (second)
         out.second =
-            read_effect(*second->as_table(), path + "second.", faults, {}, Grating{},
+            read_effect(Place{*second->as_table(), at.path + "second.", at.scene, at.faults}, {}, Grating{},
                         [&out](const Grating& grating) { return contradiction(grating, &out.first); });
     return out;
 }
 
 /// Without a kind that is known, nothing else can be looked at.
-SpaceEffect read_space_effect(const std::string& name, const toml::table& table, Faults& faults)
+SpaceEffect read_space_effect(const std::string& name, const Place& at)
 {
-    const std::string path = "effect." + name + ".";
+    const toml::table& table = at.table;
     const auto kind = table["kind"].value_or(std::string_view());
     if (std::find(space_kinds.begin(), space_kinds.end(), kind) == space_kinds.end()) {
         const auto what = table.contains("kind") ? "is " + shown(*table.get("kind")) : "is missing";
-        const toml::node& at = table.contains("kind") ? *table.get("kind") : table;
-        faults.add(at.source(), fmt::format("{}kind: {}, expected \"{}\"", path, what,
-                                            fmt::join(space_kinds, "\" or \"")));
+        const toml::node& node = table.contains("kind") ? *table.get("kind") : table;
+        at.faults.add(node.source(), fmt::format("{}kind: {}, expected \"{}\"", at.path, what,
+                                                 fmt::join(space_kinds, "\" or \"")));
         return make_space_effect(name, space_kinds.front());
     }
     SpaceEffect out = make_space_effect(name, kind);
-    std::visit(
-        [&](auto& law) { law = read_effect<std::decay_t<decltype(law)>>(table, path, faults, {"kind"}); },
-        out.law);
+    std::visit([&at](auto& law) { law = read_effect<std::decay_t<decltype(law)>>(at, {"kind"}); }, out.law);
     return out;
 }
 
 } // namespace
 
-void read_surface_effects(TomlReader& reader, const std::string& path, Faults& faults, Material& material)
+void read_surface_effects(TomlReader& reader, const std::string& path, const std::filesystem::path& scene,
+                          Faults& faults, Material& material)
 {
-    if (const toml::table* table = reader.table("magnet"))
-        material.magnet =
-            read_effect(*table, path + "magnet.", faults, {}, Magnet{},
-                        [&material](const Magnet& magnet) { return contradiction(magnet, material); });
-    if (const toml::table* table = reader.table("friction"))
-        material.friction = read_effect<Friction>(*table, path + "friction.", faults);
-    if (const toml::table* table = reader.table("texture"))
-        material.texture = read_texture(*table, path + "texture.", faults);
+    const auto place = [&](const char* effect) -> std::optional<Place> {
+        const toml::table* table = reader.table(effect);
+        if (!table)
+            return std::nullopt;
+        return Place{*table, path + effect + ".", scene, faults};
+    };
+    if (const auto at = place("magnet"))
+        material.magnet = read_effect(
+            *at, {}, Magnet{}, [&material](const Magnet& magnet) { return contradiction(magnet, material); });
+    if (const auto at = place("friction"))
+        material.friction = read_effect<Friction>(*at);
+    if (const auto at = place("texture"))
+        material.texture = read_texture(*at);
+    if (const auto at = place("height_map"))
+        material.height_map = read_effect<HeightMap>(*at);
+    if (const auto at = place("impact"))
+        material.impact = read_effect<Impact>(*at);
 }
 
-void read_space_effects(const toml::table& effects, Faults& faults, const std::vector<Material>& materials,
-                        std::vector<SpaceEffect>& out)
+void read_space_effects(const toml::table& effects, const std::filesystem::path& scene, Faults& faults,
+                        const std::vector<Material>& materials, std::vector<SpaceEffect>& out)
 {
     for (const auto& [key, value] : effects) {
         const std::string name(key.str());
@@ -198,7 +229,7 @@ void read_space_effects(const toml::table& effects, Faults& faults, const std::v
         if (std::any_of(materials.begin(), materials.end(),
                         [&name](const Material& material) { return material.name == name; }))
             fault("is the name of a material, expected another");
-        out.push_back(read_space_effect(name, *table, faults));
+        out.push_back(read_space_effect(name, {*table, "effect." + name + ".", scene, faults}));
         if (const auto wrong = contradiction(out)) {
             fault(wrong->what);
             out.pop_back();

@@ -11,10 +11,12 @@
 namespace phantom::scene {
 
 /// Sub-tables of [material.NAME], whose stiffness and radius are known. path: "material.NAME.".
-void read_surface_effects(TomlReader& reader, const std::string& path, Faults& faults, Material& material);
+/// scene: the file, where relative paths begin.
+void read_surface_effects(TomlReader& reader, const std::string& path, const std::filesystem::path& scene,
+                          Faults& faults, Material& material);
 
 /// The table [effect] with its [effect.NAME]. Materials are read before: `fdhctl effect` knows both by name.
-void read_space_effects(const toml::table& effects, Faults& faults, const std::vector<Material>& materials,
-                        std::vector<SpaceEffect>& out);
+void read_space_effects(const toml::table& effects, const std::filesystem::path& scene, Faults& faults,
+                        const std::vector<Material>& materials, std::vector<SpaceEffect>& out);
 
 } // namespace phantom::scene

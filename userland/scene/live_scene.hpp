@@ -18,9 +18,11 @@ namespace phantom::scene {
 struct Moment {
     double t_s = 0; ///< since everything began to move; below 0 all is at rest
     struct ObjectNow {
-        std::optional<Placement> placement{};          ///< of one that moves
-        std::uint32_t revision = 0;                    ///< of its shape, from 0
-        SharedArray<mesh::Vec3> vertices{}, normals{}; ///< of one that deforms, in its own frame
+        std::optional<Placement> placement{}; ///< of one that moves
+        std::uint32_t revision = 0;           ///< of its shape, from 0
+        /// Of one that deforms, in its own frame. Normals are one for each vertex and normal that meet at
+        /// a corner of the mesh at rest, in the order of their first corners.
+        SharedArray<mesh::Vec3> vertices{}, normals{};
     };
     std::vector<ObjectNow> objects;
 

@@ -176,13 +176,13 @@ Status check_rise(const ObjectEntry& entry, const Object& object, double radius_
                              object.name, rise_mm, 1e3 * interval_s, object.mesh.faces.size(), radius_mm)};
 }
 
-/// The largest contact radius of the object's materials.
+/// The largest contact radius of the object's materials, with the tip's own.
 double reach_mm(const ObjectEntry& entry, const Scene& scene)
 {
     double reach = scene.materials[entry.material].radius_mm;
     for (const GroupMaterial& group : entry.group_materials)
         reach = std::max(reach, scene.materials[group.material].radius_mm);
-    return reach;
+    return reach + scene.tip_radius_mm();
 }
 
 Result<Object> make_object(const SceneFile& file, const ObjectEntry& entry, const LoadOptions& options,

@@ -43,6 +43,14 @@ mesh::Bounds Scene::bounds() const
     return world.low[0] <= world.high[0] ? world : mesh::Bounds{};
 }
 
+double Scene::tip_radius_mm() const
+{
+    for (const SpaceEffect& effect : effects)
+        if (const auto* tip = std::get_if<BallTip>(&effect.law))
+            return tip->radius_mm;
+    return 0;
+}
+
 double Scene::max_radius_mm() const
 {
     double radius = 0;
@@ -54,11 +62,11 @@ double Scene::max_radius_mm() const
 double Scene::max_radius_mm(const Object& object) const
 {
     if (object.group_materials.empty())
-        return materials[object.material].radius_mm;
+        return materials[object.material].radius_mm + tip_radius_mm();
     double radius = 0;
     for (const std::uint32_t material : object.group_materials)
         radius = std::max(radius, materials[material].radius_mm);
-    return radius;
+    return radius + tip_radius_mm();
 }
 
 bool Scene::uses(std::uint32_t material) const
@@ -82,6 +90,8 @@ constexpr SurfaceEffectName surface_effect_names[] = {
     {"magnet", [](const Material& material) { return material.magnet.has_value(); }},
     {"friction", [](const Material& material) { return material.friction.has_value(); }},
     {"texture", [](const Material& material) { return material.texture.has_value(); }},
+    {"height_map", [](const Material& material) { return material.height_map.has_value(); }},
+    {"impact", [](const Material& material) { return material.impact.has_value(); }},
 };
 
 std::vector<std::string> effects_of(const Scene& scene, bool called_for)

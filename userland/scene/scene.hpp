@@ -17,6 +17,7 @@
 #include "mesh/rims.hpp"
 #include "scene/cache_key.hpp"
 #include "scene/deformation.hpp"
+#include "scene/device_settings.hpp"
 #include "scene/effects.hpp"
 #include "scene/motion.hpp"
 
@@ -31,6 +32,8 @@ struct Material {
     std::optional<Magnet> magnet{};
     std::optional<Friction> friction{};
     std::optional<Texture> texture{};
+    std::optional<HeightMap> height_map{};
+    std::optional<Impact> impact{};
 };
 
 /// What can be touched of an object: its mesh, and what was made of it. A copy shares all arrays.
@@ -67,12 +70,6 @@ struct Object : Surface {
     }
 };
 
-struct DeviceSettings {
-    std::optional<double> max_force_n;
-    std::optional<double> slew_n_per_ms;
-    std::optional<double> ramp_ms;
-};
-
 struct ServoSettings {
     std::optional<double> rate_hz;
     std::optional<std::string> model, combine, proxy, arith; ///< words as on the command line
@@ -96,6 +93,9 @@ struct Scene {
     /// their rims.
     [[nodiscard]] std::uint64_t patches() const;
     [[nodiscard]] mesh::Bounds bounds() const; ///< world, mm
+    /// Of the ball that a scene may call for as tip; else 0.
+    [[nodiscard]] double tip_radius_mm() const;
+    /// The largest contact radius, the tip's own included.
     [[nodiscard]] double max_radius_mm() const;
     /// Of an object's materials the largest.
     [[nodiscard]] double max_radius_mm(const Object& object) const;

@@ -11,6 +11,8 @@
 
 #include "mesh/read.hpp"
 #include "mesh/vector.hpp"
+#include "scene/device_file.hpp"
+#include "scene/effect_parameters.hpp"
 #include "scene/effects_file.hpp"
 #include "scene/motion_file.hpp"
 #include "scene/shapes/shape_keys.hpp"
@@ -182,11 +184,13 @@ ObjectEntry read_object(TomlReader& object, const std::string& path, const std::
     return out;
 }
 
-Material read_material(const std::string& name, const toml::table& table, Faults& faults)
+Material read_material(const std::string& name, const toml::table& table, const std::filesystem::path& scene,
+                       Faults& faults)
 {
     const std::string path = "material." + name + ".";
     TomlReader reader(table, path,
-                      {"stiffness_n_mm", "radius_mm", "damping_ns_m", "magnet", "friction", "texture"},
+                      {"stiffness_n_mm", "radius_mm", "damping_ns_m", "magnet", "friction", "texture",
+                       "height_map", "impact"},
                       faults);
     Material material;
     material.name = name;
@@ -194,22 +198,31 @@ Material read_material(const std::string& name, const toml::table& table, Faults
         reader.number("stiffness_n_mm", range::stiffness_n_mm).value_or(material.stiffness_n_mm);
     material.radius_mm = reader.number("radius_mm", range::radius_mm).value_or(material.radius_mm);
     material.damping_ns_m = reader.number("damping_ns_m", range::damping_ns_m);
-    read_surface_effects(reader, path, faults, material);
+    read_surface_effects(reader, path, scene, faults, material);
     return material;
 }
 
-void read_materials(TomlReader& root, Faults& faults, SceneFile& out)
+void read_materials(TomlReader& root, const std::filesystem::path& scene, Faults& faults, SceneFile& out)
 {
     const toml::table* materials = root.table("material");
     if (!materials)
         return;
+    std::size_t samples = 0;
     for (const auto& [key, value] : *materials) {
         const std::string name(key.str());
-        if (const toml::table* table = value.as_table())
-            out.materials.push_back(read_material(name, *table, faults));
-        else
+        const toml::table* table = value.as_table();
+        if (!table) {
             faults.add(value.source(), fmt::format("material.{}: is {}, expected a table [material.NAME]",
                                                    name, shown(value)));
+            continue;
+        }
+        out.materials.push_back(read_material(name, *table, scene, faults));
+        if (const auto& map = out.materials.back().height_map)
+            samples += map->samples.samples.size();
+        if (samples > map_samples_max)
+            faults.add(value.source(), fmt::format("material.{}.height_map: all height maps together have {} "
+                                                   "samples, expected at most {}",
+                                                   name, samples, map_samples_max));
     }
 }
 
@@ -290,14 +303,6 @@ void read_objects(TomlReader& root, const toml::table& table, const std::filesys
     }
 }
 
-void read_device(const toml::table& table, Faults& faults, DeviceSettings& out)
-{
-    TomlReader device(table, "device.", {"max_force_n", "slew_n_per_ms", "ramp_ms"}, faults);
-    out.max_force_n = device.number("max_force_n", range::max_force_n);
-    out.slew_n_per_ms = device.number("slew_n_per_ms", range::slew_n_per_ms);
-    out.ramp_ms = device.number("ramp_ms", range::ramp_ms);
-}
-
 void read_servo(const toml::table& table, Faults& faults, ServoSettings& out)
 {
     TomlReader servo(table, "servo.",
@@ -325,12 +330,12 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& file)
     out.unit = root.word("unit", unit_words);
     if (const auto word = root.word("levels", level_words))
         out.levels = *word == "auto";
-    read_materials(root, faults, out);
+    read_materials(root, file, faults, out);
     read_objects(root, *table, file, faults, out);
     if (const toml::table* effects = root.table("effect"))
-        read_space_effects(*effects, faults, out.materials, out.effects);
+        read_space_effects(*effects, file, faults, out.materials, out.effects);
     if (const toml::table* device = root.table("device"))
-        read_device(*device, faults, out.device);
+        out.device = read_device(*device, faults);
     if (const toml::table* servo = root.table("servo"))
         read_servo(*servo, faults, out.servo);
     if (faults.first())

@@ -71,21 +71,6 @@ FloatSet prepared(const phantom_float_ops& ops, const device::PatchSet& set, dou
     return out;
 }
 
-/// Positions round a point, a small step apart.
-std::vector<Vec3> wander(const Vec3& around, std::mt19937_64& random)
-{
-    std::normal_distribution<double> normal;
-    std::vector<Vec3> tips;
-    Vec3 tip = around;
-    for (std::size_t i = 0; i < tips_per_set; ++i) {
-        const Vec3 step = tip_step_mm * unit({normal(random), normal(random), normal(random)});
-        // Back to where it came from every other time: it stays within the set.
-        tip = i % 2 ? around : around + step;
-        tips.push_back(tip);
-    }
-    return tips;
-}
-
 /// Times ops.tick() over the tips; adds to samples and contacts.
 void time_float_ticks(const phantom_float_ops& ops, const phantom_model& model, const device::PatchSet& set,
                       const FloatSet& floats, const std::vector<Vec3>& tips, std::vector<double>& samples,
@@ -153,6 +138,22 @@ Distribution time_stacked(const phantom_float_ops& ops, const phantom_model& mod
     return Distribution::of(std::move(samples));
 }
 
+} // namespace
+
+std::vector<Vec3> wander(const Vec3& around, std::mt19937_64& random)
+{
+    std::normal_distribution<double> normal;
+    std::vector<Vec3> tips;
+    Vec3 tip = around;
+    for (std::size_t i = 0; i < tips_per_set; ++i) {
+        const Vec3 step = tip_step_mm * unit({normal(random), normal(random), normal(random)});
+        // Back to where it came from every other time: it stays within the set.
+        tip = i % 2 ? around : around + step;
+        tips.push_back(tip);
+    }
+    return tips;
+}
+
 Status time_whole_ticks(device::Device& device, const std::vector<Vec3>& tips, std::vector<double>& samples)
 {
     for (const Vec3& tip : tips) {
@@ -165,8 +166,6 @@ Status time_whole_ticks(device::Device& device, const std::vector<Vec3>& tips, s
     }
     return success();
 }
-
-} // namespace
 
 std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed)
 {

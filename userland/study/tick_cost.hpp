@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "base/result.hpp"
 #include "base/vector.hpp"
+#include "device/device.hpp"
 #include "fdh/scene_tree.hpp"
 #include "phantom_abi.h"
 #include "scene/scene.hpp"
@@ -16,6 +18,12 @@ namespace phantom::study {
 
 /// Points half a contact radius above the middles of faces spread over the scene. Repeatable.
 std::vector<Vec3> points_near_surface(const scene::Scene& scene, std::size_t count, std::uint64_t seed);
+
+/// Positions round a point, a small step apart.
+std::vector<Vec3> wander(const Vec3& around, std::mt19937_64& random);
+
+/// One tick at each of the positions, on a virtual clock; adds the ns of each.
+Status time_whole_ticks(device::Device& device, const std::vector<Vec3>& tips, std::vector<double>& samples);
 
 /// What a tick may be computed with here (PHANTOM_ISA_...): float32, the best first, and FIXED.
 std::vector<std::uint32_t> tick_sections();

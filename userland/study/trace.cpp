@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "feeder/servo_choice.hpp"
+#include "study/device_simulation.hpp"
 
 namespace phantom::study {
 
@@ -74,9 +75,14 @@ class Tracer {
     {
         run_.csv = std::string(feeder::trace_header) + "\n";
         run_.csv.reserve(path.size() * 160);
+        run_.summary.simulated = scene_.device.simulated();
+        if (!run_.summary.simulated.empty() && !path.empty())
+            simulation_.emplace(scene_.device, path.front().tip_mm);
         for (std::size_t i = 0; i < path.size(); ++i) {
             if (Status status = row(path[i], i); !status)
                 return status.error();
+            if (simulation_ && i + 1 < path.size())
+                simulation_->pass(force_n_, path[i].tip_mm, path[i + 1].tip_mm, 1.0 / rate_hz_);
             if (options_.progress && i % 256 == 0)
                 options_.progress(static_cast<double>(i) / static_cast<double>(path.size()));
         }
@@ -164,8 +170,12 @@ class Tracer {
         return success();
     }
 
-    Status row(const feeder::PathRow& at, std::size_t index)
+    /// led: the path's own row; with a device in the loop the tip is where that says.
+    Status row(const feeder::PathRow& led, std::size_t index)
     {
+        feeder::PathRow at = led;
+        if (simulation_)
+            at.tip_mm = simulation_->read(led.tip_mm);
         if (Status status = device_->move_simulated_tip(feeder::to_nanometres(at.tip_mm)); !status)
             return status;
         double query_us = 0.0;
@@ -241,7 +251,8 @@ class Tracer {
     std::array<double, 3> proxy_mm_{}; ///< after the tick before
     std::array<double, 3> force_n_{};  ///< of the tick before
     bool inside_ = false;
-    bool retry_ = false; ///< the last set found no slot
+    bool retry_ = false;                         ///< the last set found no slot
+    std::optional<DeviceSimulation> simulation_; ///< of what [device] names
     TraceRun run_;
     std::vector<double> query_us_, tick_ns_;
 };

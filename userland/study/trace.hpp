@@ -39,7 +39,8 @@ struct TraceSummary {
     std::vector<double> level_error_mm; ///< of each level from the mesh
     double force_max_n = 0, force_step_max_n = 0;
     double query_median_us = 0, tick_median_ns = 0;
-    std::string faults; ///< "none"
+    std::vector<std::string> simulated; ///< of the device: "encoder", "hand", ...
+    std::string faults;                 ///< "none"
 };
 
 struct TraceRun {
@@ -47,7 +48,8 @@ struct TraceRun {
     TraceSummary summary;
 };
 
-/// One tick per row of the path: the tip moves there, a set is fed for it, the servo ticks.
+/// One tick per row of the path: the tip moves there, a set is fed for it, the servo ticks. Where the scene's
+/// [device] names a hand, the path is where that wants to be, and the tip goes where arm and force let it.
 Result<TraceRun> run_trace(const scene::Scene& scene, const feeder::Path& path, const TraceOptions& options);
 
 } // namespace phantom::study

@@ -162,7 +162,10 @@ void LiveView::show(double blend)
         normal_ = unit_or(reported, normal_);
     else if (touch.force_norm_n() > 1e-3)
         normal_ = unit_or(touch.force_n, normal_);
-    stage_.show(touch, fed.hits, session_.scene_of(fed.level), normal_, radius_mm(), blend);
+    const std::shared_ptr<const scene::Moment> moment = session_.feeder().moment();
+    if (moment)
+        picker_.follow(session_.scene(), *moment);
+    stage_.show(touch, fed.hits, session_.scene_of(fed.level), moment.get(), normal_, radius_mm(), blend);
     stage_.set_panel(
         live_panel(session_.scene(), status, fed, servo_.is_off(), message_, !options_.offscreen()));
     const auto& samples = history_.samples();

@@ -5,6 +5,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -18,6 +19,20 @@ namespace phantom::view {
 namespace {
 
 constexpr std::size_t outline_points = 20000;
+
+/// The vertex of every point of surface_of(mesh).
+std::vector<std::uint32_t> vertices_of_points(const mesh::Mesh& mesh, vtkPolyData* surface)
+{
+    std::vector<std::uint32_t> vertices(static_cast<std::size_t>(surface->GetNumberOfPoints()));
+    vtkNew<vtkIdList> corners;
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        surface->GetCellPoints(static_cast<vtkIdType>(face), corners);
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            vertices[static_cast<std::size_t>(corners->GetId(static_cast<vtkIdType>(corner)))] =
+                mesh.faces[face][corner];
+    }
+    return vertices;
+}
 
 } // namespace
 
@@ -81,7 +96,7 @@ vtkSmartPointer<vtkPolyData> surface_of(const mesh::Mesh& mesh)
     return surface;
 }
 
-SceneActors::SceneActors(const scene::Scene& scene)
+SceneActors::SceneActors(const scene::Scene& scene) : scene_(scene)
 {
     std::size_t vertices = 0;
     for (const scene::Object& object : scene.objects)
@@ -89,7 +104,10 @@ SceneActors::SceneActors(const scene::Scene& scene)
     const std::size_t stride = 1 + vertices / outline_points;
     for (const scene::Object& object : scene.objects) {
         surfaces_.push_back(surface_of(object.mesh));
-        poses_.push_back(object.pose);
+        poses_.push_back(matrix_of(object.pose));
+        point_vertices_.push_back(object.deformation ? vertices_of_points(object.mesh, surfaces_.back())
+                                                     : std::vector<std::uint32_t>());
+        revisions_.push_back(0);
         for (std::size_t i = 0; i < object.mesh.vertices.size(); i += stride)
             outline_.push_back(to_world(object.pose, object.mesh.vertices[i]));
     }
@@ -102,7 +120,7 @@ void SceneActors::add_to(vtkRenderer* renderer, double opacity) const
         mapper->SetInputData(surfaces_[i]);
         vtkNew<vtkActor> actor;
         actor->SetMapper(mapper);
-        actor->SetUserMatrix(matrix_of(poses_[i]));
+        actor->SetUserMatrix(poses_[i]);
         vtkProperty* look = actor->GetProperty();
         set_colour(look, palette::surface);
         look->SetInterpolationToPhong();
@@ -114,6 +132,28 @@ void SceneActors::add_to(vtkRenderer* renderer, double opacity) const
         // See-through: the far side would only confuse.
         look->SetBackfaceCulling(opacity < 1);
         renderer->AddActor(actor);
+    }
+}
+
+void SceneActors::show(const scene::Moment& moment)
+{
+    for (std::uint32_t i = 0; i < surfaces_.size(); ++i) {
+        const scene::Moment::ObjectNow& now = moment.objects[i];
+        if (now.placement)
+            poses_[i]->DeepCopy(matrix_of(moment.pose(scene_, i)));
+        if (now.revision == revisions_[i])
+            continue;
+        revisions_[i] = now.revision;
+        vtkPoints* points = surfaces_[i]->GetPoints();
+        vtkDataArray* normals = surfaces_[i]->GetPointData()->GetNormals();
+        for (std::size_t p = 0; p < point_vertices_[i].size(); ++p) {
+            points->SetPoint(static_cast<vtkIdType>(p), now.vertices[point_vertices_[i][p]].data());
+            // Points and the moment's normals are numbered alike: see Moment.
+            normals->SetTuple(static_cast<vtkIdType>(p), now.normals[p].data());
+        }
+        points->Modified();
+        normals->Modified();
+        surfaces_[i]->Modified();
     }
 }
 

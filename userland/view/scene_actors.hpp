@@ -11,6 +11,7 @@
 #include <vtkSmartPointer.h>
 
 #include "base/vector.hpp"
+#include "scene/live_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace phantom::view {
@@ -29,10 +30,13 @@ vtkSmartPointer<vtkPolyData> surface_of(const mesh::Mesh& mesh);
 
 class SceneActors {
   public:
+    /// The scene must outlive them.
     explicit SceneActors(const scene::Scene& scene);
 
     /// Adds the surfaces; opacity below 1 lets the tip be seen inside. Geometry is shared between renderers.
     void add_to(vtkRenderer* renderer, double opacity) const;
+    /// Brings everything to where it is then, in all renderers; what rests is not touched.
+    void show(const scene::Moment& moment);
     /// One per object, in its frame.
     [[nodiscard]] const std::vector<vtkSmartPointer<vtkPolyData>>& surfaces() const { return surfaces_; }
     /// World positions of up to about 20,000 vertices, evenly chosen: enough to frame a picture.
@@ -40,7 +44,10 @@ class SceneActors {
 
   private:
     std::vector<vtkSmartPointer<vtkPolyData>> surfaces_;
-    std::vector<fdh::Pose> poses_;
+    const scene::Scene& scene_;
+    std::vector<vtkSmartPointer<vtkMatrix4x4>> poses_;       ///< per object, of its actors
+    std::vector<std::vector<std::uint32_t>> point_vertices_; ///< per object that deforms: of every point
+    std::vector<std::uint32_t> revisions_;                   ///< per object, as it is drawn
     std::vector<Vec3> outline_;
 };
 

@@ -22,7 +22,7 @@ constexpr double lift_part = 0.03; ///< of the contact radius: no flicker, and n
 
 SelectedTriangles::SelectedTriangles()
 {
-    show({}, {});
+    show({}, {}, nullptr);
 }
 
 vtkActor* SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, double edge_width) const
@@ -44,7 +44,8 @@ vtkActor* SelectedTriangles::add_to(vtkRenderer* renderer, double opacity, doubl
     return actor;
 }
 
-void SelectedTriangles::show(std::span<const fdh::Hit> hits, const scene::Scene& of)
+void SelectedTriangles::show(std::span<const fdh::Hit> hits, const scene::Scene& of,
+                             const scene::Moment* moment)
 {
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> faces;
@@ -56,11 +57,15 @@ void SelectedTriangles::show(std::span<const fdh::Hit> hits, const scene::Scene&
             continue;
         // They lie in the surface: draw them a hair above it.
         const double lift_mm = lift_part * of.materials[object.material_of(hit.triangle)].radius_mm;
+        const bool deformed = moment && !moment->objects[hit.object].vertices.empty();
+        const fdh::Pose pose = moment ? moment->pose(of, hit.object) : object.pose;
         faces->InsertNextCell(3);
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3& vertex = object.mesh.vertices[object.mesh.faces[hit.triangle][i]];
+            const std::uint32_t number = object.mesh.faces[hit.triangle][i];
+            const Vec3& vertex =
+                deformed ? moment->objects[hit.object].vertices[number] : object.mesh.vertices[number];
             const Vec3& normal = object.mesh.normals[object.mesh.face_normals[hit.triangle][i]];
-            const Vec3 corner = to_world(object.pose, vertex + lift_mm * normal);
+            const Vec3 corner = to_world(pose, vertex + lift_mm * normal);
             faces->InsertCellPoint(points->InsertNextPoint(corner.data()));
         }
     }

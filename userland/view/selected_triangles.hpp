@@ -11,6 +11,7 @@
 
 #include "base/vector.hpp"
 #include "fdh/query.hpp"
+#include "scene/live_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace phantom::view {
@@ -21,8 +22,9 @@ class SelectedTriangles {
 
     /// Adds them to a renderer; edge_width in pixels. Returns what the renderer draws, and owns.
     vtkActor* add_to(vtkRenderer* renderer, double opacity, double edge_width) const;
-    /// Replaces the selection. `of` is what the hits are of: the scene, or a level of detail of it.
-    void show(std::span<const fdh::Hit> hits, const scene::Scene& of);
+    /// Replaces the selection. `of` is what the hits are of: the scene, or a level of detail of it. moment:
+    /// where all of that is; nullptr: at rest.
+    void show(std::span<const fdh::Hit> hits, const scene::Scene& of, const scene::Moment* moment);
 
     [[nodiscard]] std::size_t count() const { return count_; }
     /// Distance in mm from `centre` within which half of the selection's corners lie: its size to the

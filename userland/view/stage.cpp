@@ -169,11 +169,13 @@ void Stage::size_probes(const Touch& touch, double radius_mm)
 }
 
 void Stage::show(const Touch& touch, std::span<const fdh::Hit> selected, const scene::Scene& of,
-                 const Vec3& normal, double radius_mm, double blend)
+                 const scene::Moment* moment, const Vec3& normal, double radius_mm, double blend)
 {
     touch_ = touch;
     radius_mm_ = radius_mm;
-    selected_.show(selected, of);
+    if (moment)
+        surfaces_.show(*moment);
+    selected_.show(selected, of, moment);
     // Of a patch that is small in the whole picture the edges would leave nothing to see.
     constexpr double large_patch = 0.06;
     selected_in_whole_->GetProperty()->SetEdgeVisibility(selected_.reach_mm(touch.proxy_mm) >

@@ -59,8 +59,9 @@ class Stage {
 
     /// Shows one moment. normal: outward, at the contact. blend: how far the close-up moves from where
     /// it looks to where it should, 0 ... 1 (1: at once). `of` is what the selected triangles are of.
+    /// moment: where everything is; nullptr: where nothing moves.
     void show(const Touch& touch, std::span<const fdh::Hit> selected, const scene::Scene& of,
-              const Vec3& normal, double radius_mm, double blend);
+              const scene::Moment* moment, const Vec3& normal, double radius_mm, double blend);
     void set_panel(Panel panel) { panel_ = std::move(panel); }
     void render();
     /// Renders and writes a PNG: whole or not at all.

@@ -27,12 +27,20 @@ SurfacePicker::SurfacePicker(const scene::Scene& scene, const SceneActors& surfa
 
 SurfacePicker::~SurfacePicker() = default;
 
+void SurfacePicker::follow(const scene::Scene& scene, const scene::Moment& moment)
+{
+    for (std::uint32_t i = 0; i < parts_.size(); ++i)
+        if (moment.objects[i].placement)
+            parts_[i]->pose = moment.pose(scene, i);
+}
+
 std::optional<Vec3> SurfacePicker::first_hit(const Vec3& from, const Vec3& to) const
 {
     std::optional<Vec3> nearest;
     double nearest_part = 2; // of the way; a hit has at most 1
     vtkNew<vtkGenericCell> cell;
     for (const auto& part : parts_) {
+        part->locator->BuildLocator(); // nothing, unless the surface has changed
         const Vec3 begin = to_local(part->pose, from), end = to_local(part->pose, to);
         double t = 0;
         Vec3 at{}, parametric{};

@@ -18,6 +18,9 @@ class SurfacePicker {
     SurfacePicker(const scene::Scene& scene, const SceneActors& surfaces);
     ~SurfacePicker();
 
+    /// What moves is looked for where it is then. A shape that changed was changed in `surfaces`.
+    void follow(const scene::Scene& scene, const scene::Moment& moment);
+
     /// The first point of the surface on the way from `from` to `to`, world mm.
     [[nodiscard]] std::optional<Vec3> first_hit(const Vec3& from, const Vec3& to) const;
 

@@ -10,6 +10,7 @@
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkRenderWindowInteractor.h>
 
+#include "scene/live_scene.hpp"
 #include "view/chart_picture.hpp"
 #include "view/path_actors.hpp"
 #include "view/scene_words.hpp"
@@ -27,6 +28,7 @@ struct Moment {
     std::size_t row = 0;
     Touch touch;
     fdh::Nearest nearest;
+    std::shared_ptr<const scene::Moment> places; ///< of what moves; nothing where nothing does
     Vec3 normal{0, 1, 0};
     double radius_mm = 1;
 };
@@ -46,10 +48,17 @@ Result<Moment> moment_of(const Trace& trace, const Options& options, const scene
                                                       moment.row, trace.rows.size())};
     moment.touch = trace.rows[moment.row];
     const auto tree = scene::build_tree<14>(scene);
-    tree.nearest(moment.touch.query_centre_mm(), selected_triangles, search_radius_mm, moment.nearest);
+    std::optional<scene::LiveScene> live;
+    if (scene::LiveScene::is_called_for(scene)) {
+        live.emplace(scene, tree);
+        live->advance(moment.touch.time_s - trace.rows.front().time_s);
+        moment.places = live->moment();
+    }
+    (live ? live->tree() : tree)
+        .nearest(moment.touch.query_centre_mm(), selected_triangles, search_radius_mm, moment.nearest);
     moment.nearest.sort();
     SelectedTriangles selected;
-    selected.show(moment.nearest.hits, scene);
+    selected.show(moment.nearest.hits, scene, moment.places.get());
     moment.normal = outward_normal(moment.touch, selected);
     moment.radius_mm = scene.max_radius_mm();
     if (!moment.nearest.hits.empty()) {
@@ -126,7 +135,8 @@ Status run_trace_view(const Options& options)
         stage.set_full_scale(max_force_n);
         stage.set_colour_bar(max_force_n);
         add_path(stage.whole(), *trace, 0.0036 * stage.extent_mm(), max_force_n);
-        stage.show(moment->touch, moment->nearest.hits, *scene, moment->normal, moment->radius_mm, 1);
+        stage.show(moment->touch, moment->nearest.hits, *scene, moment->places.get(), moment->normal,
+                   moment->radius_mm, 1);
         stage.set_panel(panel_of(*scene, *trace, *moment));
         stage.chart().mark(moment->touch.time_s);
         stage.chart().show(history, history.front().time_s, history.back().time_s, max_force_n);

@@ -31,9 +31,6 @@
 
 #include "surface.h"
 
-/* Loads this much beyond what holds, as a way, stick still: A is kept in whole nm. mm */
-#define FRICTION_STILL REAL(2e-6)
-
 /* mu in phantom_stick.coefficient_q24. */
 #define FRICTION_ONE (1 << 24)
 
@@ -106,7 +103,7 @@ static inline struct real3 friction_force(struct phantom_float_job *job,
 	}
 	load = mul(law.stiffness, real3_length(z));
 	excess = load - mul(mu, surface->load);
-	if (excess > mul(law.stiffness, FRICTION_STILL)) {
+	if (excess > 0) {
 		mu = friction_slip(mu, friction_target(job, &law, u),
 				   divide(excess, surface->load));
 		z = real3_scale(z, real_min(REAL(1), divide(mul(mu, surface->load), load)));

@@ -36,6 +36,8 @@
 /* 2^64 / 1e9: a wave per second in 2^-64 of a wave per ns. */
 #define WAVE_PER_SECOND 18446744073ULL
 
+_Static_assert(sizeof(struct phantom_ring) == 8 + 12 * 4, "jobs are compared as bytes: no hole");
+
 #define NJ_PER_MJ 1000000 /* N mm are mJ */
 #define IMPACT_ENERGY_MOST REAL(2000) /* mJ; more gives no hit */
 

@@ -9,7 +9,7 @@
  * F is the gradient of k q^2 / 2, the contact's own energy at the relief's depth (the bump mapping of
  * Ho, Basdogan & Srinivasan 1999, made conservative): on a flat surface no energy is made, on a curved
  * one of curvature c some c A of it. g lets the relief rise with p, so that F is continuous where contact
- * begins, and keeps q between p/2 and 3p/2: |F| <= 3/2 N sqrt(9/4 + slope^2), slope <= 1 of each of both.
+ * begins, and keeps q between p/2 and 3p/2: |F| <= 3/2 N sqrt(9/4 + slope^2), each of both adds 1 at most.
  * What a band limit fades takes at most k q^2 / 2 with it.
  *
  * x is a place in the scene to the nm, so the set that it is told in does not matter; between materials h

@@ -214,8 +214,13 @@ TEST_F(Load, ASetOfCommandsAnswersInJson)
     EXPECT_EQ(facts["triangles"], 2208);
     EXPECT_TRUE(facts["objects"][0]["report"]["watertight"].get<bool>());
     EXPECT_EQ(facts["effects"]["not_called_for"],
-              json::array({"damping", "magnet", "friction", "texture", "constant", "viscosity", "guide"}));
+              json::array({"damping", "magnet", "friction", "texture", "height_map", "impact", "constant",
+                           "viscosity", "guide", "field", "tip"}));
     EXPECT_GT(facts["tick"]["median_ns"].get<double>(), 0);
+    ASSERT_EQ(facts["effects"]["costs"].size(), 1U);
+    EXPECT_EQ(facts["effects"]["costs"][0]["name"], "contact");
+    EXPECT_GT(facts["effects"]["costs"][0]["set_bytes"].get<int>(), 64 * 100);
+    EXPECT_EQ(facts["device"]["simulated"], json::array());
 
     const Outcome prepared = run({"prepare", mesh, "-o", path("out.ply"), "--fit", "50", "--json"});
     ASSERT_EQ(prepared.status, 0) << prepared.err;

@@ -74,6 +74,84 @@ TEST_F(SpaceTables, OfAllKindsFollowTheOrderOfTheBits)
     EXPECT_EQ(set.effect_tables.size() * 8, guides + 8 + sizeof rail);
 }
 
+TEST_F(SpaceTables, AFieldAndABallFollowTheGuides)
+{
+    scene::ForceField field;
+    field.grid.corner_mm = {1, 2, 3};
+    field.grid.spacing_mm = {10, 5, 4};
+    field.grid.nodes = {3, 3, 3};
+    field.grid.force_n.resize(27);
+    field.grid.force_n[1] = {0.5, 0, -0.25};
+    field.scale = 2;
+    scene.effects.push_back({"ball", scene::BallTip{1.5}});
+    scene.effects.push_back({"field", field});
+    feeder::EffectTables effects(scene);
+    tables(effects, {0, 0, 0});
+    EXPECT_EQ(set.header.effects, PHANTOM_EFFECT_FIELD | PHANTOM_EFFECT_TIP);
+    const auto grid = entry<phantom_field>(0);
+    EXPECT_EQ(grid.corner_nm[2], 3'000'000);
+    EXPECT_EQ(grid.spacing_nm[0], 10'000'000U);
+    EXPECT_EQ(grid.nodes[1], 3U);
+    EXPECT_EQ(grid.border_nm, 2'000'000U); // a quarter of 8 mm
+    const auto node = entry<std::array<__s32, 3>>(sizeof grid + sizeof(std::array<__s32, 3>));
+    EXPECT_EQ(node, (std::array<__s32, 3>{1'000'000, 0, -500'000}));
+    // 27 nodes are 81 numbers and an empty one.
+    EXPECT_EQ(entry<phantom_tip>(sizeof grid + 82 * sizeof(__s32)).radius_nm, 1'500'000U);
+    tables(effects, {9000, 0, 0});
+    EXPECT_EQ(set.header.effects, PHANTOM_EFFECT_TIP);
+}
+
+TEST_F(SpaceTables, HeightMapsAndImpactsAreSurfaces)
+{
+    scene::HeightMap map;
+    map.samples.width = 8;
+    map.samples.height = 4;
+    map.samples.samples.assign(32, 0.5);
+    map.samples.samples[1] = 1; // second column of the upper edge
+    map.spacing_mm = 2;
+    map.height_mm = 0.5;
+    scene.materials[0].height_map = map;
+    scene.materials[0].impact = scene::Impact{10, 200, 25, 2};
+    scene.materials[0].friction = scene::Friction{0.5, {}, {}, 0};
+    feeder::EffectTables effects(scene);
+    const std::vector<std::uint32_t> materials = {0};
+    effects.fill(materials, set);
+    set.materials.push_back(effects.material(0));
+    EXPECT_TRUE(device->submit(set));
+    EXPECT_EQ(set.header.effects,
+              PHANTOM_EFFECT_FRICTION | PHANTOM_EFFECT_HEIGHT_MAP | PHANTOM_EFFECT_IMPACT);
+    EXPECT_EQ(entry<phantom_friction>(0).stiffness_mn_mm, 1000U); // the material's
+    const auto first = entry<phantom_height_map>(sizeof(phantom_friction));
+    EXPECT_EQ(first.columns, 8U);
+    EXPECT_EQ(first.rows, 4U);
+    EXPECT_EQ(first.spacing_nm, 2'000'000U);
+    EXPECT_EQ(first.amplitude_nm, 250'000U);
+    const auto heights = entry<std::array<__s32, 32>>(sizeof(phantom_friction) + sizeof first);
+    for (std::size_t i = 0; i < heights.size(); ++i)
+        EXPECT_EQ(heights[i], i == 3 * 8 + 1 ? 250'000 : 0) << i; // the upper edge is the last row
+    const auto impact = entry<phantom_impact>(sizeof(phantom_friction) + sizeof first + sizeof heights);
+    EXPECT_EQ(impact.gain_mns_m, 10'000U);
+    EXPECT_EQ(impact.force_un, 2'000'000U);
+    EXPECT_EQ(impact.frequency_hz, 200U);
+    EXPECT_EQ(impact.decay_us, 25'000U);
+}
+
+TEST_F(SpaceTables, TwoGratingsShareATable)
+{
+    scene.materials[0].texture = scene::Texture{{0.05, 2, {1, 0, 0}}, scene::Grating{0.1, 4, {0, -0.6, 0.8}}};
+    feeder::EffectTables effects(scene);
+    const std::vector<std::uint32_t> materials = {0};
+    effects.fill(materials, set);
+    set.materials.push_back(effects.material(0));
+    EXPECT_TRUE(device->submit(set));
+    const auto texture = entry<phantom_texture>(0);
+    EXPECT_EQ(texture.amplitude_nm[0], 50'000U);
+    EXPECT_EQ(texture.wave_per_km[0][0], 500'000);
+    EXPECT_EQ(texture.amplitude_nm[1], 100'000U);
+    EXPECT_EQ(texture.wave_per_km[1][1], -150'000);
+    EXPECT_EQ(texture.wave_per_km[1][2], 200'000);
+}
+
 TEST_F(SpaceTables, OfNothingAreNothing)
 {
     feeder::EffectTables effects(scene);

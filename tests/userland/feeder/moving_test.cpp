@@ -4,11 +4,13 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <gtest/gtest.h>
 
 #include "feeder/feeder.hpp"
+#include "feeder/moving_objects.hpp"
 #include "feeder/path.hpp"
 #include "scenes.hpp"
 
@@ -136,7 +138,7 @@ TEST(MovingScene, ForceOfABallThatSwingsIsThatOfItsPlaceNow)
     double worst = 0, least = 9, most = 0;
     Vector before = machine.force();
     double step = 0;
-    for (int i = 0; i < 1500; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         const phantom_tick tick = machine.tick(tip);
         ASSERT_FALSE(tick.flags & PHANTOM_TICK_UNCOVERED) << i;
         const scene::Placement now = scene.objects[0].motion->at(machine.seconds());
@@ -168,7 +170,7 @@ TEST(MovingScene, ForceOfABallOnATurntableIsExact)
     machine.begin(tip);
     Rest rest(scene);
     double worst = 0, most = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1500; ++i) {
         const phantom_tick tick = machine.tick(tip);
         ASSERT_FALSE(tick.flags & PHANTOM_TICK_UNCOVERED) << i;
         const scene::Placement now = scene.objects[0].motion->at(machine.seconds());
@@ -197,7 +199,7 @@ TEST(MovingScene, AFastBodyThatComesOverARestingTipPushesItAndIsNeverPassedThrou
     const double acceleration = 30 * std::pow(2 * pi * 4, 2);
     Rest rest(scene);
     int pushed = 0;
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         const phantom_tick tick = machine.tick(tip);
         ASSERT_FALSE(tick.flags & PHANTOM_TICK_UNCOVERED) << i;
         const scene::Placement now = scene.objects[0].motion->at(machine.seconds());
@@ -205,7 +207,7 @@ TEST(MovingScene, AFastBodyThatComesOverARestingTipPushesItAndIsNeverPassedThrou
         EXPECT_LT(length(machine.force() - wanted), acceleration * 0.005 * 0.005 + 0.01) << i;
         pushed += wanted[2] > 3.5;
     }
-    EXPECT_GT(pushed, 50);
+    EXPECT_GT(pushed, 20);
     EXPECT_EQ(machine.device().status().faults, 0U);
 }
 
@@ -284,6 +286,79 @@ TEST(MovingScene, WhatMovesAndMayComeNearIsNamedWithoutPatches)
         EXPECT_EQ(patch.object, 0U);
 }
 
+TEST(MovingObjects, WhatComesWithinReachBeforeTheNextRoundIsNear)
+{
+    scene::Scene scene = sphere_scene();
+    add_object(scene, sphere(5, 20, 40), {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 100}}, 0);
+    scene.objects[1].motion = scene::Motion{.kind = scene::Motion::Kind::oscillation,
+                                            .axis = {0, 1, 0},
+                                            .frequency = 3,
+                                            .amplitude_mm = 100,
+                                            .ramp_s = 0.2};
+    scene::LiveScene live(scene, scene::build_tree<14>(scene));
+    feeder::MovingObjects moving(scene);
+    constexpr double delay_s = 0.004, reach_mm = 3;
+    const Vector tip = {0, 40, 100};
+    int near = 0, far = 0;
+    for (double t = 0; t < 1.5; t += delay_s) {
+        live.advance(t);
+        moving.look({*live.moment(), tip, {}, delay_s}, reach_mm);
+        bool comes = false;
+        for (int part = 0; part <= 4; ++part) {
+            const scene::Placement then = scene.objects[1].motion->at(t + 0.25 * part * delay_s);
+            comes = comes || length(then.to_frame(tip) - Vector{0, 0, 100}) < 5 + reach_mm;
+        }
+        if (comes) {
+            EXPECT_EQ(moving.near(), std::vector<std::uint32_t>{1}) << t;
+            const double speed = length(live.moment()->objects[1].placement->velocity_mm_s);
+            EXPECT_DOUBLE_EQ(moving.speed_mm_s(), speed);
+            EXPECT_GE(moving.way_mm(), 0.999 * scene::way_margin * speed * delay_s);
+        }
+        near += !moving.near().empty();
+        far += moving.near().empty();
+    }
+    EXPECT_GT(near, 30);
+    EXPECT_GT(far, 200);
+    EXPECT_TRUE(feeder::MovingObjects(sphere_scene()).none());
+}
+
+/// Over the pole 512 triangles, all that a set takes, cover 5 mm. What comes at 1.5 m/s is named although no
+/// set has its triangles: the tip gets uncovered then, and nothing is passed through unnoticed.
+TEST(MovingScene, WhatMayComeNearIsNamedWhereSetsCannotReachIt)
+{
+    scene::Scene scene = sphere_scene();
+    add_object(scene, sphere(5, 20, 40), {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {30, 0, 60}}, 0);
+    scene.objects[1].motion = scene::Motion{.kind = scene::Motion::Kind::oscillation,
+                                            .axis = {1, 0, 0},
+                                            .frequency = 8,
+                                            .amplitude_mm = 30,
+                                            .ramp_s = 0.1};
+    struct Sets : device::Device::Listener {
+        int named = 0, absent = 0;
+        void started(const phantom_start&, std::uint64_t) override {}
+        void submitting(const device::PatchSet& set) override
+        {
+            const auto moving = std::find_if(set.objects.begin(), set.objects.end(),
+                                             [](const auto& object) { return object.flags != 0; });
+            const auto number = static_cast<std::uint32_t>(moving - set.objects.begin());
+            const bool with_patches =
+                std::any_of(set.patches.begin(), set.patches.end(),
+                            [number](const auto& patch) { return patch.object == number; });
+            absent += moving == set.objects.end();
+            named += moving != set.objects.end() && !with_patches;
+        }
+    } sets;
+    Machine machine(scene, 1000, 4);
+    machine.device().listen(&sets);
+    const Vector tip = {0, 0, 51};
+    machine.begin(tip);
+    for (int i = 0; i < 1000; ++i)
+        machine.tick(tip);
+    machine.device().listen(nullptr);
+    EXPECT_GT(sets.named, 5);
+    EXPECT_GT(sets.absent, 100); // no byte where it is far away
+}
+
 TEST(MovingScene, MoreThanASetCanCarryCutItsCoverage)
 {
     scene::Scene scene;
@@ -305,6 +380,22 @@ TEST(MovingScene, MoreThanASetCanCarryCutItsCoverage)
     EXPECT_EQ(set.objects.size(), 3U);
     // To the fourth ball.
     EXPECT_NEAR(set.header.radius_nm * 1e-6, std::hypot(27, 6) - 4, 0.6);
+}
+
+TEST(MovingScene, AnObjectFarFromTheCentreOfItsMotionIsRefused)
+{
+    scene::Scene scene = sphere_scene();
+    scene.file = "far.toml";
+    for (const double x : {1700.0, 1760.0}) {
+        scene.objects[0].motion = scene::Motion{.centre_mm = {x, 0, 0}, .frequency = 1};
+        const Status status = feeder::check_reach(scene, {});
+        EXPECT_EQ(status.ok(), x < 1710);
+        if (!status) {
+            EXPECT_EQ(
+                status.error().text().substr(0, 86),
+                "far.toml: object object0: reaches 1847 mm from the centre of its motion, a set 1800 mm");
+        }
+    }
 }
 
 /// A drum's head under a tip that stands still: 0.4 mm above it at rest.
@@ -354,7 +445,7 @@ TEST(DeformingScene, ATipBelowTheSurfaceStaysBelowItWhileItRises)
     const Vector tip = {0.5, 0, 50.5};
     machine.begin(tip);
     int inside = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1400; ++i) {
         const phantom_tick tick = machine.tick(tip);
         const double head = 50 + scene.objects[0].deformation->displacement_mm(machine.seconds());
         const double depth = head + radius_mm - tip[2];
@@ -362,7 +453,7 @@ TEST(DeformingScene, ATipBelowTheSurfaceStaysBelowItWhileItRises)
         EXPECT_NEAR(machine.force()[2], std::max(0.0, depth), 75 * 0.036 + 0.05) << i;
         inside += (tick.flags & PHANTOM_TICK_INSIDE) != 0;
     }
-    EXPECT_GT(inside, 500);
+    EXPECT_GT(inside, 200);
 }
 
 TEST(MovingScene, IsTheSameEveryTimeOnAVirtualClock)
@@ -382,6 +473,36 @@ TEST(MovingScene, IsTheSameEveryTimeOnAVirtualClock)
         return forces;
     };
     EXPECT_EQ(run(), run());
+}
+
+/// What a viewer does while the feeder's thread runs; ThreadSanitizer would see a race.
+TEST(MovingScene, OthersMayLookAtItsMomentsWhileItIsFed)
+{
+    scene::Scene scene = sphere_scene();
+    scene.objects[0].motion = scene::Motion{.frequency = 1, .ramp_s = 0.1};
+    scene.objects[0].deformation =
+        scene::Deformation{.centre_mm = {0, 0, 50}, .radius_mm = 35, .amplitude_mm = 1, .frequency_hz = 2};
+    const auto tree = scene::build_tree<14>(scene);
+    auto device = device::Device::open_usermode({});
+    ASSERT_TRUE(device);
+    feeder::Feeder feeder(scene, tree, *device, {.rate_hz = 1000});
+    ASSERT_TRUE(feeder.feed({0, 0, 52}, {0, 0, 52}, false));
+    feeder.begin_motion();
+    std::jthread feeding([&feeder](const std::stop_token& stop) { (void)feeder.run(stop); });
+    fdh::Nearest near;
+    std::uint32_t revision = 0;
+    while (revision < 5) {
+        const auto moment = feeder.moment();
+        ASSERT_TRUE(moment);
+        revision = moment->objects[0].revision;
+        double highest = 0;
+        for (const Vector& vertex : moment->objects[0].vertices)
+            highest = std::max(highest, moment->objects[0].placement->to_world(vertex)[2]);
+        EXPECT_NEAR(highest, 50, 1.001);
+        // The scene at rest is everyone's.
+        tree.nearest({0, 0, 52}, 10, 50, near);
+        EXPECT_GE(feeder.last().hits.size(), 64U);
+    }
 }
 
 } // namespace

@@ -75,12 +75,14 @@ TEST(SceneFile, UnknownKeysAreNamedWithTheirLine)
               "radius_mm, tube_radius_mm, chord_mm");
     EXPECT_EQ(below_object("[material.soft]\nstifness_n_mm = 1\n"),
               "a.toml:5: material.soft.stifness_n_mm: unknown key, expected stiffness_n_mm, radius_mm, "
-              "damping_ns_m, magnet, friction, texture");
+              "damping_ns_m, magnet, friction, texture, height_map, impact");
     EXPECT_EQ(below_object("[material.soft.friction]\nsliding = 1\nstatic = 1\n"),
               "a.toml:5: material.soft.friction.sliding: unknown key, expected static, dynamic, "
               "stiffness_n_mm, stribeck_mm_s");
-    EXPECT_EQ(below_object("[device]\nforce = 1\n"),
-              "a.toml:5: device.force: unknown key, expected max_force_n, slew_n_per_ms, ramp_ms");
+    EXPECT_EQ(
+        below_object("[device]\nforce = 1\n"),
+        "a.toml:5: device.force: unknown key, expected max_force_n, slew_n_per_ms, ramp_ms, encoder_mm, "
+        "hand, mass_kg, damping_ns_m, friction_n, delay_ms, amplifier");
     EXPECT_EQ(below_object("[servo]\nrate = 1\n"),
               "a.toml:5: servo.rate: unknown key, expected rate_hz, model, combine, proxy, arith, steps, "
               "crossfade_ms");
@@ -150,6 +152,32 @@ TEST(SceneFile, ValuesOutOfRange)
               "a.toml:3: object 1: fit_mm: is -1, expected 0.000001 ... 1000000 mm");
     EXPECT_EQ(in_object("unit = \"furlong\"\n"),
               "a.toml:3: object 1: unit: is \"furlong\", expected um, mm, cm, m, in");
+}
+
+TEST(SceneFile, ASimulatedDevice)
+{
+    const std::string device = "[device]\nmass_kg = 0.05\n",
+                      hand = "hand = { stiffness_n_mm = 0.3, damping_ns_m = 3 }\n";
+    EXPECT_EQ(below_object(device + hand +
+                           "encoder_mm = 0.05\ndamping_ns_m = 0.3\nfriction_n = 0.05\n"
+                           "delay_ms = 1.5\namplifier = { max_force_n = 3, bandwidth_hz = 200 }\n"),
+              "");
+    EXPECT_EQ(below_object("[device]\nencoder_mm = 0.05\n"), "");
+    EXPECT_EQ(below_object(device),
+              "a.toml:5: device.mass_kg: has no meaning without hand, which the arm answers");
+    EXPECT_EQ(below_object("[device]\n" + hand),
+              "a.toml:4: device.mass_kg: is missing, expected 0.001 ... 10 kg of the arm beside hand");
+    EXPECT_EQ(below_object("[device]\nfriction_n = 0.1\n"),
+              "a.toml:5: device.friction_n: has no meaning without hand, which the arm answers");
+    EXPECT_EQ(below_object(device + "hand = { stiffness_n_mm = 0.3 }\n"),
+              "a.toml:6: device.hand.damping_ns_m: is missing, expected 0 ... 1000 N*s/m");
+    EXPECT_EQ(below_object(device + "hand = 3\n"), "a.toml:6: device.hand: is 3, expected a table");
+    EXPECT_EQ(below_object(device + hand + "delay_ms = -1\n"),
+              "a.toml:7: device.delay_ms: is -1, expected 0 ... 100 ms");
+    EXPECT_EQ(below_object(device + hand + "amplifier = { bandwidth_hz = 0 }\n"),
+              "a.toml:7: device.amplifier.bandwidth_hz: is 0, expected 1 ... 10000 Hz");
+    EXPECT_EQ(below_object(device + hand + "amplifier = {}\n"),
+              "a.toml:7: device.amplifier: is empty, expected max_force_n or bandwidth_hz");
 }
 
 TEST(SceneFile, MeshAndShape)

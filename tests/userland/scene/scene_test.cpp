@@ -202,12 +202,13 @@ TEST(Scene, EffectsAreCalledForByMaterialsThatNameThem)
     const Scene without = loaded_text(object);
     EXPECT_TRUE(without.effects_called_for().empty());
     EXPECT_EQ(without.effects_not_called_for(),
-              (std::vector<std::string>{"damping", "magnet", "friction", "texture", "constant", "viscosity",
-                                        "guide"}));
+              (std::vector<std::string>{"damping", "magnet", "friction", "texture", "height_map", "impact",
+                                        "constant", "viscosity", "guide", "field", "tip"}));
     const Scene with = loaded_text(object + "damping_ns_m = 0\n[material.m.friction]\nstatic = 0.5\n");
     EXPECT_EQ(with.effects_called_for(), (std::vector<std::string>{"damping", "friction"}));
     EXPECT_EQ(with.effects_not_called_for(),
-              (std::vector<std::string>{"magnet", "texture", "constant", "viscosity", "guide"}));
+              (std::vector<std::string>{"magnet", "texture", "height_map", "impact", "constant", "viscosity",
+                                        "guide", "field", "tip"}));
 }
 
 TEST(Scene, DefaultMaterialMayBeDefined)

@@ -30,7 +30,7 @@ TEST(ShippedScenes, LoadWithoutADefect)
             EXPECT_EQ(object.report.normals_repaired, 0U) << entry.path() << " " << object.name;
         }
     }
-    EXPECT_EQ(scenes, 5U);
+    EXPECT_EQ(scenes, 13U);
 }
 
 TEST(ShippedScenes, PaperSceneHasAboutTwentyThousandTriangles)
