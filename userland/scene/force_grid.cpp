@@ -72,6 +72,7 @@ Status lay_out_axis(const std::vector<Row>& rows, std::size_t axis, const std::s
 {
     const char name = "xyz"[axis];
     std::vector<double> places;
+    places.reserve(rows.size());
     for (const Row& row : rows)
         places.push_back(row.place_mm[axis]);
     std::sort(places.begin(), places.end());

@@ -146,6 +146,8 @@ TEST(DeviceSimulation, InTheLoopHandAndSurfaceShareTheForce)
     const auto rows = traced(device, 3000);
     ASSERT_EQ(rows.size(), 3000U);
     EXPECT_EQ(rows.front()[3], 55);
+    // In the air it follows the hand, whose damper knows how fast that goes.
+    EXPECT_NEAR(rows[240][3], 55 - 8 * 0.24, 0.02);
     // 1 N/mm (53 - z) = 0.2 N/mm (z - 51)
     const double z = (1.0 * 53 + 0.2 * 51) / 1.2;
     EXPECT_NEAR(rows.back()[3], z, 1e-3);
