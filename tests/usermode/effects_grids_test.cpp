@@ -250,5 +250,19 @@ TEST_F(FieldEffect, GivesItsCurlTimesTheAreaAndNoMore)
     EXPECT_NEAR(lap(), 0, 1e-4) << "a spring";
 }
 
+TEST_F(FieldEffect, ASetThatIsRefusedLeavesTheTablesOfTheOneInUse)
+{
+    const auto field = [](double newton) {
+        return Feel{.field = field_of({5, 3, 7}, [=](const Place&) { return Place{newton, 0, 0}; })};
+    };
+    feel(field(0.5), {0, 4, 44});
+    EXPECT_NEAR(force({0, 4, 44})[0], 0.5, 1e-5);
+    Plane plane(++set_id);
+    add_effects(plane, field(-0.5));
+    plane.patches[0].object = 99;
+    ASSERT_EQ(feeder->submit(plane), -EINVAL);
+    EXPECT_NEAR(force({0, 4, 44})[0], 0.5, 1e-5);
+}
+
 } // namespace
 } // namespace phantom::test
