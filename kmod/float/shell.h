@@ -292,11 +292,10 @@ static inline u32 shell_overlap(const struct phantom_float_job *job, struct shel
 	struct paper_step *steps = scratch_paper(set);
 	struct nm_point tip = nm_point(job->tip_nm);
 	const u32 end = state->count * PHANTOM_LANES, cost = SHELL_COST_CROSSED * state->count;
+	/* the first contacts need the planes of all; a piece goes on by one contact at least */
+	const u32 planes = state->cursor ? 0 : SHELL_COST_PLANES * state->count;
 	u32 cursor = state->cursor, spent = 0;
 
-	/* the first contacts may need the planes of all */
-	if (!cursor)
-		spent += SHELL_COST_PLANES * PHANTOM_LANES * state->count;
 	for (; cursor < end && spent < SHELL_PIECE; cursor++) {
 		struct paper_step *at = &steps[cursor / PHANTOM_LANES];
 		u32 lane = cursor % PHANTOM_LANES;
@@ -312,7 +311,7 @@ static inline u32 shell_overlap(const struct phantom_float_job *job, struct shel
 	state->cursor = cursor;
 	if (cursor == end)
 		shell_next(state, SHELL_SUM);
-	return spent;
+	return spent + planes;
 }
 
 /* Returns what its rims cost. */
