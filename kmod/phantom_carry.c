@@ -86,7 +86,8 @@ void phantom_carry(struct phantom_servo *servo, const struct phantom_slot *slot,
 	s64 lift_nm = touch->carry_nm;
 	int attempt;
 
-	job->ring.force_un = 0; /* no way from here on is the tip's own: an impact does no work on it */
+	job->ring.force_un =
+		0; /* no way from here on is the tip's own: an impact does no work on it */
 	for (attempt = 0; attempt < 2; attempt++) {
 		bool path = phantom_carry_lift(&carried, lift_nm, straight_nm, job->previous_nm);
 

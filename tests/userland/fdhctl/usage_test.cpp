@@ -24,8 +24,8 @@ TEST_F(Usage, EveryCommandHasHelp)
 {
     const Outcome all = run({"--help"});
     EXPECT_EQ(all.status, 0);
-    for (const char* command : {"load", "status", "rate", "model", "effect", "stop", "info", "prepare", "stroke",
-                                "trace", "record", "replay", "bench", "devices", "view"}) {
+    for (const char* command : {"load", "status", "rate", "model", "effect", "stop", "info", "prepare",
+                                "stroke", "trace", "record", "replay", "bench", "devices", "view"}) {
         EXPECT_NE(all.out.find(std::string("\n  ") + command), std::string::npos) << command;
         const Outcome outcome = run({command, "--help"});
         EXPECT_EQ(outcome.status, 0) << command;
