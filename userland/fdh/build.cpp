@@ -142,8 +142,8 @@ Centres centres_of(std::span<const Triangle> triangles, const GridVertex* vertic
 /// Sums over the triangles of some leaves.
 struct LeafSums {
     float longest_edge2 = 0; ///< [steps²]
-    float own_boxes = 0;     ///< half surfaces of the triangles' boxes [steps²]
-    float leaf_boxes = 0;    ///< and of their leaves'
+    float area = 0;    ///< of the triangles, a step² more of each: a degenerate one is not free [steps²]
+    float widths2 = 0; ///< squares of the leaves' mean widths [steps²]
 };
 
 /// Fills a leaf with triangles, lanes in their order. Returns its hull.
@@ -165,7 +165,7 @@ Hull<K> fill_leaf(Leaf& leaf, std::span<const std::uint32_t> numbers, std::span<
     kernels.make(corners, leaf, made);
     for (std::size_t lane = 0; lane < count; lane++) {
         leaf.triangle[lane] = numbers[lane] | (made.needles >> lane & 1 ? needle_flag : 0);
-        sums.own_boxes += made.half_surface[lane];
+        sums.area += made.twice_area[lane] / 2 + 1;
     }
     for (std::size_t lane = count; lane < lanes; lane++) {
         for (int axis = 0; axis < 3; axis++) {
@@ -181,9 +181,10 @@ Hull<K> fill_leaf(Leaf& leaf, std::span<const std::uint32_t> numbers, std::span<
         hull.low[k] = std::abs(made.low[k]) > exact ? made.low[k] - 2 : made.low[k];
         hull.high[k] = std::abs(made.high[k]) > exact ? made.high[k] + 2 : made.high[k];
     }
-    const float x = hull.high[0] - hull.low[0] + 1, y = hull.high[1] - hull.low[1] + 1,
-                z = hull.high[2] - hull.low[2] + 1;
-    sums.leaf_boxes += x * (y + z) + y * z;
+    float width = 0;
+    for (int axis = 0; axis < 3; axis++)
+        width += (hull.high[axis] - hull.low[axis] + 1) / 2;
+    sums.widths2 += width * width;
     return hull;
 }
 
@@ -289,14 +290,14 @@ void fill(TreeData<K>& data, std::span<const Triangle> triangles, const GridVert
         });
     data.nodes = {nodes, levels.nodes()};
     data.leaves = {leaves, leaf_count};
-    double longest2 = 0, own = 0, leaf = 0;
+    double longest2 = 0, area = 0, widths2 = 0;
     for (const LeafSums& part : parts) {
         longest2 = std::max(longest2, double{part.longest_edge2});
-        own += double{part.own_boxes};
-        leaf += double{part.leaf_boxes};
+        area += double{part.area};
+        widths2 += double{part.widths2};
     }
     data.longest_edge = std::sqrt(longest2) * (1 + 0x1p-20);
-    data.spread = leaf / own;
+    data.spread = widths2 / area;
     data.storage = std::move(storage);
 }
 

@@ -18,7 +18,7 @@ using LeafCorners = float[3][3][lanes];
 template <int K>
 struct MadeLeaf {
     float low[K / 2], high[K / 2]; ///< of the corners; sums of three coordinates may be rounded by one step
-    float half_surface[lanes];     ///< of each triangle's box, made a step thicker: a flat one is not free
+    float twice_area[lanes];       ///< of each triangle [steps²]
     float longest_edge2;
     std::uint32_t needles; ///< bit i: triangle i needs needle_flag
 };

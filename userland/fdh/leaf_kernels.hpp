@@ -30,21 +30,13 @@ struct LeafMaker : LaneMath<I> {
 
     /// Whether the normal, computed in float, would be too far off (needle_flag). A degenerate triangle's
     /// computed normal is rounding error and as short as that.
-    static unsigned needles(const Vector& u, const Vector& v)
+    /// nn: length² of u × v.
+    static unsigned needles(const Vector& u, const Vector& v, V nn)
     {
-        const V nn = length2(cross(u, v));
         const V sine2 = S::set(static_cast<float>(needle_sine * needle_sine));
         const Mask wide = S::both(S::less_equal(sine2 * length2(u) * length2(v), nn), S::less(S::set(0), nn));
         return ~S::bits(wide) & ((1u << S::width) - 1);
     }
-
-    /// Half the surface of a box, a step thicker than it is.
-    static V half_surface(V x, V y, V z)
-    {
-        const V one = S::set(1);
-        return (x + one) * ((y + one) + (z + one)) + (y + one) * (z + one);
-    }
-    static V size(V a, V b, V c) { return S::max(S::max(a, b), c) - S::min(S::min(a, b), c); }
 
     template <int Sign>
     static V signed_sum(V sum, V x)
@@ -95,10 +87,10 @@ struct LeafMaker : LaneMath<I> {
             store(leaf.vertex, lane, first);
             store(leaf.edge1, lane, u);
             store(leaf.edge2, lane, v);
-            made.needles |= needles(u, v) << lane;
+            const V nn = length2(cross(u, v));
+            made.needles |= needles(u, v, nn) << lane;
             longest2 = S::max(longest2, longest);
-            S::store(made.half_surface + lane,
-                     half_surface(size(a.x, b.x, c.x), size(a.y, b.y, c.y), size(a.z, b.z, c.z)));
+            S::store(made.twice_area + lane, S::sqrt(nn));
         }
         made.longest_edge2 = S::highest(longest2);
         bound_all(corners, made, typename Counted<K / 2>::Type{});

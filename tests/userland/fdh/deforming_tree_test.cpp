@@ -59,5 +59,25 @@ TEST(DeformingTree, IsBuiltAnewWhereItsSpreadHasGrownAndNotBefore)
     EXPECT_LT(built, 12);
 }
 
+/// Leaves get long and thin, and no triangle leaves its neighbours.
+TEST(DeformingTree, IsBuiltAnewWhereTheMeshIsDrawnOut)
+{
+    const Mesh rest = sphere(5, 1.0);
+    DeformingTree<14> tree(TriangleTree<14>::build(rest.view()));
+    const double fresh = tree.tree().spread();
+    EXPECT_NEAR(tree.tree().refitted(scaled(rest, 7, {1, 2, 3}).view()).spread(), fresh, 0.01 * fresh);
+    int built = 0;
+    for (double longest = 1; longest < 30; longest *= 1.1) {
+        Mesh drawn = rest;
+        for (auto& v : drawn.vertices)
+            v[1] *= longest;
+        built += tree.update(drawn.view());
+        const double anew = TriangleTree<14>::build(drawn.view()).spread();
+        EXPECT_LE(tree.tree().spread(), 2 * anew) << longest;
+    }
+    EXPECT_GT(built, 1);
+    EXPECT_LT(built, 12);
+}
+
 } // namespace
 } // namespace phantom::fdh::test
