@@ -286,7 +286,8 @@ phantom_set& SetBuilder::request(std::uint64_t id)
     sent_materials_ = {};
     std::copy(materials_.begin(), materials_.end(), sent_materials_.begin());
     const std::vector<std::uint8_t> tables = effect_tables(materials_, feels_, header_.origin_nm);
-    header_.effect_bytes = std::uint32_t(tables.size());
+    sent_tables_ = std::uint32_t(tables.size());
+    header_.effect_bytes = sent_tables_;
     if (!tables.empty())
         std::memcpy(sent_materials_.data() + materials_.size(), tables.data(), tables.size());
     sent_objects_ = {};
@@ -317,7 +318,7 @@ void SetBuilder::spoil(Part part, std::uint32_t word, std::uint32_t value)
     case Part::Material:
         // the tables behind them too
         write(sent_materials_.data(),
-              word % ((materials_.size() * sizeof(phantom_material) + header_.effect_bytes) / 4));
+              word % ((materials_.size() * sizeof(phantom_material) + sent_tables_) / 4));
         break;
     case Part::Object:
         write(sent_objects_.data(), word % (objects_.size() * sizeof(phantom_object) / 4));

@@ -87,6 +87,7 @@ class SetBuilder {
     static constexpr std::size_t sent_materials_max =
         PHANTOM_MATERIALS_MAX + PHANTOM_EFFECT_BYTES_MAX / sizeof(phantom_material);
     std::array<phantom_material, sent_materials_max> sent_materials_{};
+    std::uint32_t sent_tables_ = 0; ///< bytes behind them, whatever the header says
     std::array<phantom_object, PHANTOM_OBJECTS_MAX> sent_objects_{};
 };
 
