@@ -27,8 +27,8 @@
 /* Above that, 1 - b1 - b2 is as good as b0. */
 #define BARYCENTRIC_INNER REAL(1.0 / 32)
 
-/* Farther outside than that is far outside, whatever the size. */
-#define BARYCENTRIC_MOST REAL(4096)
+/* Farther outside than that is far outside, whatever the size; m0 + b1 (m1 - m0) - b2 (m0 - m2) stays small. */
+#define BARYCENTRIC_MOST REAL(1024)
 
 /* E or m along one axis. */
 LANES_INLINE lanes row3_axis(const struct row3 *row, u32 step, u32 axis)
