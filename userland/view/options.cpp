@@ -98,7 +98,8 @@ void add_scene_options(CLI::App& app, Options& options, std::string& prepare, bo
 void add_live_options(CLI::App& app, Options& options)
 {
     app.add_flag("--usermode", options.usermode, "do not look for the kernel's device");
-    app.add_flag("!--no-control", options.control, "do not let fdhctl status, rate, model, effect and stop reach us");
+    app.add_flag("!--no-control", options.control,
+                 "do not let fdhctl status, rate, model, effect and stop reach us");
     app.add_option("--rate", options.rate_hz, "servo rate, Hz")->check(CLI::Range(1000, 10000));
     app.add_option("--seconds", options.seconds, "end after this time")->check(CLI::PositiveNumber);
     app.add_option("--script", options.script,
