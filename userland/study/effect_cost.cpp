@@ -101,15 +101,9 @@ Result<Measured> measure_once(const scene::Scene& scene, const fdh::SceneTree<14
                               const std::vector<Vec3>& points, phantom_model model, std::uint32_t isa,
                               std::uint32_t budget)
 {
-    device::UsermodeOptions usermode;
-    usermode.virtual_clock = true;
-    usermode.isa = isa == PHANTOM_ISA_FIXED ? PHANTOM_ISA_NONE : isa;
-    model.arith = isa == PHANTOM_ISA_FIXED ? PHANTOM_ARITH_FIXED : PHANTOM_ARITH_FLOAT;
-    Result<device::Device> device = device::Device::open_usermode(usermode);
+    Result<device::Device> device = open_to_measure(model, isa);
     if (!device)
         return device.error();
-    if (Status status = device->set_model(model); !status)
-        return status.error();
     return Ticks(scene, tree, *device, budget).measure(points);
 }
 

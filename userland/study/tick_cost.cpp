@@ -197,12 +197,8 @@ std::vector<std::uint32_t> tick_sections()
     return out;
 }
 
-Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree, phantom_model model,
-                              std::uint32_t isa, std::uint32_t budget)
+Result<device::Device> open_to_measure(phantom_model model, std::uint32_t isa)
 {
-    const phantom_float_ops* const ops = ops_of(isa);
-    if (!ops)
-        return Error{"", fmt::format("this processor has no {}", device::isa_name(isa))};
     device::UsermodeOptions usermode;
     usermode.virtual_clock = true;
     usermode.isa = isa == PHANTOM_ISA_FIXED ? PHANTOM_ISA_NONE : isa;
@@ -212,6 +208,18 @@ Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14
         return device.error();
     if (Status status = device->set_model(model); !status)
         return status.error();
+    return device;
+}
+
+Result<TickCost> measure_tick(const scene::Scene& scene, const fdh::SceneTree<14>& tree, phantom_model model,
+                              std::uint32_t isa, std::uint32_t budget)
+{
+    const phantom_float_ops* const ops = ops_of(isa);
+    if (!ops)
+        return Error{"", fmt::format("this processor has no {}", device::isa_name(isa))};
+    Result<device::Device> device = open_to_measure(model, isa);
+    if (!device)
+        return device.error();
     phantom_start start{};
     start.flags = PHANTOM_START_LIMITS_OFF;
 

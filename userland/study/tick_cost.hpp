@@ -28,6 +28,9 @@ Status time_whole_ticks(device::Device& device, const std::vector<Vec3>& tips, s
 /// What a tick may be computed with here (PHANTOM_ISA_...): float32, the best first, and FIXED.
 std::vector<std::uint32_t> tick_sections();
 
+/// User mode on a virtual clock, with that model in the arithmetic of one of tick_sections().
+Result<device::Device> open_to_measure(phantom_model model, std::uint32_t isa);
+
 struct TickCost {
     std::uint32_t isa = PHANTOM_ISA_NONE;
     std::uint32_t patches = 0; ///< in the sets, at most
